@@ -11,7 +11,7 @@ use flexframe::dynamics::{
 };
 use flexframe::model::Model;
 use flexframe::nalgebra::Vector3;
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 
 /// Result of the example.
 pub struct Answer {
@@ -23,8 +23,8 @@ pub struct Answer {
 
 /// Runs the example.
 pub fn run() -> Result<Answer, Box<dyn Error>> {
-    let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plate.toml"))?;
-    let model = Model::build(&scene, |_| ())?;
+    let body = Body::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plate.toml"))?;
+    let model = Model::build(&body, |_| ())?;
     let tip = model.points[0].1.clone();
     let gain = 0.2;
     let controller: SharedLoad = Arc::new(LoadFn::new("tip damper", move |motion, applied| {

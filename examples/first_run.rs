@@ -3,12 +3,12 @@
 use std::error::Error;
 
 use flexframe::model::Model;
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let scene = Scene::read("examples/plate.toml")?;
-    let model = Model::build(&scene, |_progress| ())?;
-    for now in model.start(&scene)? {
+    let body = Body::read("examples/plate.toml")?;
+    let model = Model::build(&body, |_progress| ())?;
+    for now in model.start(&body)? {
         let now = now?;
         println!("{} {:?} {}", now.time, now.omega_body, now.energy());
     }

@@ -12,7 +12,7 @@ use flexframe::dynamics::{
 };
 use flexframe::model::Model;
 use flexframe::nalgebra::Vector3;
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 
 /// The midpoint rule, with room for its second stage.
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ const MIDPOINT: Method = Method {
 
 /// Differences of the attitude in rad after the run: with steps of 4e-5 s and of 2e-5 s, and under step control at 1e-6.
 pub fn run() -> Result<[f64; 3], Box<dyn Error>> {
-    let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plate.toml"))?;
+    let scene = Body::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plate.toml"))?;
     let model = Model::build(&scene, |_| ())?;
     let body = model.body.truncated(4);
     let mut initial = Initial::at_rest(4);

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use faer::Mat;
 use flexframe::model::{Builder, Model};
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 use serde_json::Value;
 use slepc::{Slepc, Stop};
 use tempfile::TempDir;
@@ -17,8 +17,8 @@ use tempfile::TempDir;
 use crate::program::root;
 
 /// A scene of `examples`, as SLEPc is to solve it, and as this program does.
-fn both(name: &str, change: impl Fn(&mut Scene)) -> [Model; 2] {
-    let mut scene = Scene::read(root().join("examples").join(name)).unwrap();
+fn both(name: &str, change: impl Fn(&mut Body)) -> [Model; 2] {
+    let mut scene = Body::read(root().join("examples").join(name)).unwrap();
     change(&mut scene);
     let ours = Model::build(&scene, |_| ()).unwrap();
     let builder = Builder { solver: Some(Slepc::run(2, Stop::default())), ..Builder::default() };

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use flexframe::dynamics::{ConservativeBody, Reached, Rows, StepControl};
 use flexframe::model::Model;
-use flexframe::scene::{Choice, Effect, Flexible, Large, Scene};
+use flexframe::scene::{Body, Choice, Effect, Flexible, Large};
 
 const STEP: f64 = 1e-4;
 const RUNS: usize = 15;
@@ -20,13 +20,13 @@ const RUNS: usize = 15;
 fn main() {
     let read = |name: &str| {
         let file = format!("examples/effects/{name}.toml");
-        Scene::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(file)).expect("the scene is there")
+        Body::read(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join(file)).expect("the scene is there")
     };
     let full = read("full");
     let without = |effect: Effect| {
-        let mut scene = full.clone();
-        scene.effects.choices[effect] = Choice::Off;
-        scene
+        let mut given = full.clone();
+        given.effects.choices[effect] = Choice::Off;
+        given
     };
     let mut uncorrected = full.clone();
     uncorrected.modes.static_correction = Choice::Off;
@@ -57,12 +57,12 @@ fn main() {
         "", "shapes", "entries", "evaluations", "step, us", "modes, ms", "statics, ms", "reduction, ms"
     );
     let (mut of_full, mut of_ten) = (None, None);
-    for (name, scene) in rows {
-        let model = Model::build(&scene, |_| ()).expect("the model is built");
+    for (name, given) in rows {
+        let model = Model::build(&given, |_| ()).expect("the model is built");
         let loads = model.loads().to_vec();
         let body = ConservativeBody::new(&model.body, model.damping_ratios(), loads, &model.physics);
         let entries = body.expect("the body is made").matrix_entries();
-        let (step, evaluations) = measure(&model, &scene);
+        let (step, evaluations) = measure(&model, &given);
         let whole = *of_full.get_or_insert(step);
         if name == "ten modes" {
             of_ten = Some(step);
@@ -83,10 +83,10 @@ fn main() {
 }
 
 /// Microseconds a step, and evaluations a step.
-fn measure(model: &Model, scene: &Scene) -> (f64, f64) {
-    let method = *scene.method();
+fn measure(model: &Model, body: &Body) -> (f64, f64) {
+    let method = *body.method();
     let simulation = model
-        .start_with(scene, method, StepControl::Fixed(STEP), Rows::EverySteps(u64::MAX))
+        .start_with(body, method, StepControl::Fixed(STEP), Rows::EverySteps(u64::MAX))
         .expect("the motion starts");
     let mut shortest = Duration::MAX;
     let mut stats = simulation.stats();

@@ -8,7 +8,7 @@ use clap::Args;
 use diagnostic::{Diagnosis, Failure, Kind};
 use flexframe::linearize::LinearSettings;
 use flexframe::outputs::{OutputError, Written};
-use scene::{Flexible, System};
+use scene::{Flexible, Scene};
 
 use crate::arguments::values::{angular_velocity, finite, mode_count};
 use crate::output;
@@ -32,9 +32,9 @@ pub struct ModeCountArgs {
 }
 
 impl ModeCountArgs {
-    pub fn set(self, system: &mut System) {
-        for scene in &mut system.bodies {
-            scene.modes.flexible = self.flexible.map_or(scene.modes.flexible, Flexible::Count);
+    pub fn set(self, scene: &mut Scene) {
+        for body in &mut scene.bodies {
+            body.modes.flexible = self.flexible.map_or(body.modes.flexible, Flexible::Count);
         }
     }
 

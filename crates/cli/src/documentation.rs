@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use clap::error::ErrorKind;
-use scene::System;
+use scene::Scene;
 
 use crate::cli::Cli;
 
@@ -153,7 +153,7 @@ fn scenes_of_the_documentation_are_read() {
         for (_, block) in blocks(&text).into_iter().filter(|(language, _)| *language == "toml") {
             if block.starts_with("title") {
                 whole += 1;
-                if let Err(error) = System::parse(&block, root().join("examples/of_the_page.toml")) {
+                if let Err(error) = Scene::parse(&block, root().join("examples/of_the_page.toml")) {
                     panic!("{page}: {error}\n{block}");
                 }
             } else if let Err(error) = toml::from_str::<toml::Table>(&block) {

@@ -6,7 +6,7 @@ use clap::Args;
 use diagnostic::Failure;
 use flexframe::fmu::scene_of_body;
 use flexframe::given_file::GivenFile;
-use scene::{AssignError, Scene, System, assign, text_from, text_of};
+use scene::{AssignError, Body, Scene, assign, text_from, text_of};
 use toml::Value;
 
 use crate::cli_error::CliError;
@@ -32,15 +32,15 @@ pub struct SceneInput {
 }
 
 impl SceneInput {
-    /// As [`Self::read_system`], of a body file, too: then it is the scene that it was made of.
-    pub fn read_system_or_body(self) -> Result<System, Failure> {
+    /// As [`Self::read_scene`], of a body file, too: then it is the scene that it was made of.
+    pub fn read_scene_or_body_file(self) -> Result<Scene, Failure> {
         if !self.scene.extension().is_some_and(|extension| extension == "h5" || extension == "hdf5") {
-            return self.read_system();
+            return self.read_scene();
         }
         GivenFile::expect(&self.scene, &[GivenFile::Scene, GivenFile::Body], "a scene file or a body file")?;
-        let scene = scene_of_body(&self.scene)?;
-        let text = assigned(&scene.source, &self.set)?;
-        Ok(Scene::parse(&text, &self.scene)?.into())
+        let body = scene_of_body(&self.scene)?;
+        let text = assigned(&body.text_alone, &self.set)?;
+        Ok(Body::parse(&text, &self.scene)?.into())
     }
 
     /// The results file that was given in the place of a scene, if one was. It has a scene of its own, which is not to be changed.
@@ -58,19 +58,19 @@ impl SceneInput {
     }
 
     /// Reads the scene of one body, sets the values, and checks it.
-    pub fn read(self) -> Result<Scene, Failure> {
+    pub fn read(self) -> Result<Body, Failure> {
         let body = self.body.clone();
         let (text, path) = self.text()?;
-        Ok(Scene::parse_body(&text, path, body.as_deref())?)
+        Ok(Body::parse_body(&text, path, body.as_deref())?)
     }
 
     /// Reads all bodies with what ties them together, or the one that was named.
-    pub fn read_system(self) -> Result<System, Failure> {
+    pub fn read_scene(self) -> Result<Scene, Failure> {
         if self.body.is_some() {
             return Ok(self.read()?.into());
         }
         let (text, path) = self.text()?;
-        Ok(System::parse(&text, path)?)
+        Ok(Scene::parse(&text, path)?)
     }
 
     /// The text with the values set, and where it comes from.

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use diagnostic::Failure;
 use flexframe::modes;
-use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_scene, outputs_of_system};
+use flexframe::outputs::{OutputError, Outputs, Written, outputs_of_body, outputs_of_scene};
 use flexframe::plausible;
 use flexframe::report::{File, Report};
 use flexframe::run::RunSettings;
 use model::Builder;
-use scene::{Scene, Shared, System};
+use scene::{Body, Scene, Shared};
 use slepc::files_of_folder;
 
 use crate::arguments::{FolderArgs, ModeCountArgs, SceneArgs};
@@ -29,30 +29,30 @@ pub struct Session {
 
 impl Session {
     /// The scene of one body, after doubts about it have been told.
-    pub fn read(&self, input: SceneInput) -> Result<Scene, Failure> {
+    pub fn read(&self, input: SceneInput) -> Result<Body, Failure> {
         let scene = input.read()?;
         if !self.json_errors {
-            output::doubts(plausible::doubts_of_scene(&scene));
+            output::doubts(plausible::doubts_of_body(&scene));
         }
         Ok(scene)
     }
 
     /// As [`Self::read`], of any number of bodies.
-    pub fn read_system(&self, input: SceneInput) -> Result<System, Failure> {
-        let system = input.read_system()?;
-        self.tell_doubts(&system);
-        Ok(system)
+    pub fn read_scene(&self, input: SceneInput) -> Result<Scene, Failure> {
+        let scene = input.read_scene()?;
+        self.tell_doubts(&scene);
+        Ok(scene)
     }
 
     /// A scene of one body, or of bodies in joints; of several that nothing ties one has to be named.
-    pub fn read_one(&self, input: SceneInput, modes: ModeCountArgs) -> Result<System, Failure> {
-        let mut system = input.clone().read_system()?;
-        if !system.has_connections() && system.bodies.len() > 1 {
-            system = input.read()?.into();
+    pub fn read_one(&self, input: SceneInput, modes: ModeCountArgs) -> Result<Scene, Failure> {
+        let mut scene = input.clone().read_scene()?;
+        if !scene.has_connections() && scene.bodies.len() > 1 {
+            scene = input.read()?.into();
         }
-        self.tell_doubts(&system);
-        modes.set(&mut system);
-        Ok(system)
+        self.tell_doubts(&scene);
+        modes.set(&mut scene);
+        Ok(scene)
     }
 
     /// Reads a scene, runs a command, writes the files of its report to the folder and prints it. The command reads `tables` beside the scene.
@@ -62,13 +62,13 @@ impl Session {
         out: &FolderArgs,
         files: &[File],
         tables: &[&Path],
-        command: impl FnOnce(&mut Self, &System) -> Result<Report, Failure>,
+        command: impl FnOnce(&mut Self, &Scene) -> Result<Report, Failure>,
     ) -> Result<(), Failure> {
         out.check()?;
-        let system = self.read_system(scene)?;
-        let outputs = outputs_of_system(&system, &self.builder, out.files.overwrite);
+        let scene = self.read_scene(scene)?;
+        let outputs = outputs_of_scene(&scene, &self.builder, out.files.overwrite);
         let outputs = tables.iter().fold(outputs, |outputs, table| outputs.and_input(table));
-        self.report(outputs, &out.folder(&system.path), files, json, |session| command(session, &system))
+        self.report(outputs, &out.folder(&scene.path), files, json, |session| command(session, &scene))
     }
 
     /// Claims the files of a command, runs it, writes the files of its report to the folder and prints it.
@@ -87,9 +87,9 @@ impl Session {
         output::print(&report, json)
     }
 
-    pub fn tell_doubts(&self, system: &System) {
+    pub fn tell_doubts(&self, scene: &Scene) {
         if !self.json_errors {
-            output::doubts(plausible::doubts_of_system(system));
+            output::doubts(plausible::doubts_of_scene(scene));
         }
     }
 
@@ -98,10 +98,10 @@ impl Session {
     }
 
     /// Writes the modes that a scene asks for as a problem for SLEPc.
-    pub fn write_only(mut self, scene: &Scene, to: &WriteOnly, overwrite: bool) -> Result<(), Failure> {
+    pub fn write_only(mut self, body: &Body, to: &WriteOnly, overwrite: bool) -> Result<(), Failure> {
         Written::FOLDER.check(&to.folder).map_err(OutputError::from)?;
-        outputs_of_scene(scene, &self.builder, overwrite).claim(&files_of_folder(&to.folder))?;
-        let files = modes::write_problem(scene, &self.builder, &to.folder, to.ranks, |p| self.bar.build(p))?;
+        outputs_of_body(body, &self.builder, overwrite).claim(&files_of_folder(&to.folder))?;
+        let files = modes::write_problem(body, &self.builder, &to.folder, to.ranks, |p| self.bar.build(p))?;
         drop(self.bar);
         output::list(&files)
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use model::Builder;
-use scene::Scene;
+use scene::Body;
 use slepc::{Slepc, Stop};
 
 use crate::cli_error::CliError;
@@ -58,7 +58,7 @@ impl SolverInput {
     }
 
     /// As [`Self::take`]; refuses SLEPc for several bodies.
-    pub fn take_of(&self, scenes: &[Scene], builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
+    pub fn take_of(&self, scenes: &[Body], builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
         match scenes.len() {
             1 => self.take(builder, stop),
             count => self.refuse_several(count).map(|()| None),

@@ -5,12 +5,12 @@
 //!
 //! ```no_run
 //! use flexframe::model::Model;
-//! use flexframe::scene::Scene;
+//! use flexframe::scene::Body;
 //!
-//! let scene = Scene::read("examples/plate.toml")?;
-//! let model = Model::build(&scene, |_progress| ())?;
+//! let body = Body::read("examples/plate.toml")?;
+//! let model = Model::build(&body, |_progress| ())?;
 //! println!("{:?} Hz", model.natural_frequencies());
-//! for now in model.start(&scene)? {
+//! for now in model.start(&body)? {
 //!     let now = now?;
 //!     println!("{} {:?} {}", now.time, now.omega_body, now.energy());
 //! }

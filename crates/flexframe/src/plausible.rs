@@ -8,7 +8,7 @@ use dynamics::Effect;
 use fem_tet10::{Material, Materials};
 use modal::NoCycles;
 use model::{BodyMarker, Doubt, Meshed, Model};
-use scene::{Body, Choice, Interpolation, Joint, Load, LoadKind, Scene, System, TablePoints, Units, tables_of};
+use scene::{Body, BodySource, Choice, Interpolation, Joint, Load, LoadKind, Scene, TablePoints, Units, tables_of};
 
 use crate::report::quantity;
 use crate::rows::units::UnitLabels;
@@ -33,29 +33,29 @@ const IMPERIAL_GRAVITIES: [f64; 2] = [386.09, 32.174];
 
 /// Doubts about a scene by itself, in sentences: materials and gravity. They are only judged where the labels of all
 /// units are known.
-pub fn doubts_of_scene(scene: &Scene) -> Vec<String> {
+pub fn doubts_of_body(body: &Body) -> Vec<String> {
     let mut doubts = Vec::new();
-    if let Body::Meshed(body) = &scene.body {
-        doubts.extend(of_materials(&body.materials, &scene.units));
+    if let BodySource::Meshed(meshed) = &body.source {
+        doubts.extend(of_materials(&meshed.materials, &body.units));
     }
-    doubts.extend(scene.loads.iter().enumerate().filter_map(|(load, acts)| of_acceleration(load, acts, &scene.units)));
+    doubts.extend(body.loads.iter().enumerate().filter_map(|(load, acts)| of_acceleration(load, acts, &body.units)));
     doubts
 }
 
 /// The same of all bodies of a scene, each with the name of its body where there are several.
-pub fn doubts_of_system(system: &System) -> Vec<String> {
-    let of_body = |scene: &Scene| {
-        let name = scene.name.clone().filter(|_| system.bodies.len() > 1);
+pub fn doubts_of_scene(scene: &Scene) -> Vec<String> {
+    let of_body = |body: &Body| {
+        let name = body.name.clone().filter(|_| scene.bodies.len() > 1);
         let named =
             move |doubt| name.as_ref().map_or_else(|| String::clone(&doubt), |name| format!("body {name}: {doubt}"));
-        doubts_of_scene(scene).into_iter().map(named).collect::<Vec<_>>()
+        doubts_of_body(body).into_iter().map(named).collect::<Vec<_>>()
     };
-    system.bodies.iter().flat_map(of_body).chain(struck_drives(system)).collect()
+    scene.bodies.iter().flat_map(of_body).chain(struck_drives(scene)).collect()
 }
 
 /// Drives whose coordinate goes along straight lines of a table: its rate jumps where they meet.
-pub(crate) fn struck_drives(system: &System) -> Vec<String> {
-    let end = system.time.end;
+pub(crate) fn struck_drives(scene: &Scene) -> Vec<String> {
+    let end = scene.time.end;
     let of_joint = |joint: &Joint| {
         let tables = joint.drive.as_ref().map_or_else(Vec::new, |drive| tables_of(&drive.history));
         let lines = tables.into_iter().filter(|table| table.interpolation == Interpolation::Linear);
@@ -75,7 +75,7 @@ pub(crate) fn struck_drives(system: &System) -> Vec<String> {
             )
         })
     };
-    system.joints.iter().filter_map(of_joint).collect()
+    scene.joints.iter().filter_map(of_joint).collect()
 }
 
 fn of_materials(materials: &Materials, units: &Units) -> Vec<String> {
@@ -89,20 +89,20 @@ fn of_materials(materials: &Materials, units: &Units) -> Vec<String> {
 }
 
 /// Doubts about a scene, its mesh and its modes, in sentences.
-pub(crate) fn doubts(scene: &Scene, model: &Model) -> Vec<String> {
-    let mut doubts = doubts_of_scene(scene);
-    if let Body::Matrices(files) = &scene.body {
+pub(crate) fn doubts(given: &Body, model: &Model) -> Vec<String> {
+    let mut doubts = doubts_of_body(given);
+    if let BodySource::Matrices(files) = &given.source {
         let notes = model.meshed.iter().flat_map(|meshed| &meshed.mesh_notes);
         doubts.extend(notes.map(|note| format!("{}: {note}", files.stiffness.display())));
-        doubts.extend(without_elements(scene, model));
+        doubts.extend(without_elements(given, model));
     }
     if let Some(Meshed { mesh, elements: Some(body), mesh_notes, .. }) = &model.meshed {
-        if let Body::File(_) = scene.body {
-            doubts.extend(of_materials(&body.materials, &scene.units));
+        if let BodySource::File(_) = given.source {
+            doubts.extend(of_materials(&body.materials, &given.units));
         }
         doubts.extend(mesh_notes.iter().map(|note| format!("{}: {note}", body.mesh.display())));
-        doubts.extend(of_mass(model.body.mass, mesh.size(), &scene.units));
-        doubts.extend(model::doubts(scene, &scene.loads, body, mesh).into_iter().map(|doubt: Doubt| doubt.to_string()));
+        doubts.extend(of_mass(model.body.mass, mesh.size(), &given.units));
+        doubts.extend(model::doubts(given, &given.loads, body, mesh).into_iter().map(|doubt: Doubt| doubt.to_string()));
     }
     if let Some(reason) = model.meshed.as_ref().and_then(|meshed| meshed.no_cycles.as_ref()) {
         doubts.push(without_cycles(reason));
@@ -167,10 +167,10 @@ fn warping(marker: &BodyMarker) -> Option<String> {
 }
 
 /// Parts of a motion that a body of matrices may lack.
-fn without_elements(scene: &Scene, model: &Model) -> impl Iterator<Item = String> {
+fn without_elements(body: &Body, model: &Model) -> impl Iterator<Item = String> {
     let missing = |effect: Effect| {
         let row = &model.advice.effects[effect];
-        let is_open = model.choices[effect] == Choice::Auto && scene.method().abilities.switches_effects;
+        let is_open = model.choices[effect] == Choice::Auto && body.method().abilities.switches_effects;
         (is_open && row.on).then(|| {
             format!(
                 "{} may change the answer by up to {:.1e} (a bound), and is left out: the elements of a body of matrices are not \

@@ -14,7 +14,7 @@ pub(crate) use full::model_error;
 
 use model::Model;
 use results::Results;
-use scene::System;
+use scene::Scene;
 
 use crate::commands::check::report::CheckReport;
 use crate::commands::run::body_report::BodyRunReport;
@@ -23,7 +23,7 @@ use card::worst;
 /// The card of a run that has come to its end. `check`: the check by the full body, or the reason why there is none; `better`: the
 /// cure of large modes that are worse than others.
 pub(crate) fn of_run(
-    (system, models): (&System, &[Model]),
+    (system, models): (&Scene, &[Model]),
     results: &Results,
     reports: &[BodyRunReport],
     check: Result<&CheckReport, &str>,

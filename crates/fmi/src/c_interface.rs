@@ -689,7 +689,7 @@ mod tests {
 
     use flexframe::fmu::{FmuSettings, pack};
     use flexframe::model::Builder;
-    use flexframe::scene::Scene;
+    use flexframe::scene::Body;
 
     use super::*;
 
@@ -702,11 +702,11 @@ mod tests {
     fn instance(folder: &Path) -> Instance {
         let text = "title = \"a ball\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n[time]\nend = 1.0\nstep = 0.1\n\
                     [body]\nrigid = { mass = 1, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }\n";
-        let scene = Scene::parse(text, "ball.toml").unwrap();
+        let body = Body::parse(text, "ball.toml").unwrap();
         let library = folder.join("library");
         std::fs::write(&library, format!("{MARKER} fmi2DoStep")).unwrap();
         let report = pack(
-            &scene.into(),
+            &body.into(),
             &Builder::default(),
             &folder.join("ball.fmu"),
             &FmuSettings { library: Some(library) },

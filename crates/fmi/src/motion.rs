@@ -43,8 +43,8 @@ impl Reviewed {
     fn of(owner: Owner) -> Self {
         Self::new(owner, |Owner { fmu, initial }| {
             let bodies = fmu.bodies.iter().zip(initial);
-            let reviews = bodies.map(|(FmuBody { scene, model, .. }, initial)| {
-                Review::new(model.case(scene, initial), model.physics.effects, &model.advice)
+            let reviews = bodies.map(|(FmuBody { body, model, .. }, initial)| {
+                Review::new(model.case(body, initial), model.physics.effects, &model.advice)
             });
             reviews.collect()
         })
@@ -85,7 +85,7 @@ pub struct State {
 impl Motion {
     /// From the beginning of the scene to its end or the `stop` time, if that is later; times in the scene's unit.
     pub fn new(fmu: FmuModel, stop: Option<f64>) -> Result<Self, (Box<FmuModel>, Error)> {
-        let initial: Vec<Initial> = fmu.bodies.iter().map(|body| body.model.initial(&body.scene)).collect();
+        let initial: Vec<Initial> = fmu.bodies.iter().map(|body| body.model.initial(&body.body)).collect();
         let inputs: Vec<Channel> = fmu.variables.iter().filter_map(|variable| channel(variable.source)).collect();
         let run = match run(&fmu, &inputs, stop) {
             Ok(run) => run,
@@ -224,7 +224,7 @@ impl Motion {
             let kind = (body, std::mem::discriminant(&broken));
             if !self.told.contains(&kind) {
                 self.told.push(kind);
-                let scene = &reviewed.borrow_owner().fmu.bodies[body].scene;
+                let scene = &reviewed.borrow_owner().fmu.bodies[body].body;
                 new.push(match &scene.name {
                     Some(name) => format!("body {name}: {broken}"),
                     None => broken.to_string(),
@@ -269,7 +269,7 @@ fn advance(run: &mut Run, reviews: &mut [Review<'_>], bodies: &[FmuBody], target
     loop {
         let reached = run.advance(u64::MAX, |body, instant| reviews[body].look(instant));
         // A step that fails after the model has come to mean nothing fails for that.
-        let refusing = bodies.iter().zip(&*reviews).filter(|(body, _)| body.scene.effects.refuse);
+        let refusing = bodies.iter().zip(&*reviews).filter(|(body, _)| body.body.effects.refuse);
         if let Some((time, refusal)) = refusing.filter_map(|(_, review)| review.stop()).next() {
             return Err(Failure::Refused { time, words: refusal.to_string() });
         }

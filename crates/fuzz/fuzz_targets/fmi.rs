@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 use flexframe::fmu::{FmuSettings, marker, pack};
 use flexframe::model::Builder;
-use flexframe::scene::System;
+use flexframe::scene::Scene;
 use flexframe_fmi::c_interface::*;
 use libfuzzer_sys::fuzz_target;
 
@@ -42,8 +42,8 @@ static FMU: LazyLock<(tempfile::TempDir, String, u32)> = LazyLock::new(|| {
     let place = |name: &str| folder.path().join(name);
     std::fs::write(place("library"), format!("{} fmi2DoStep", marker())).unwrap();
     let settings = FmuSettings { library: Some(place("library")) };
-    let system = System::parse(SCENE, "two.toml").unwrap();
-    let report = pack(&system, &Builder::default(), &place("two.fmu"), &settings, |_| ()).unwrap();
+    let scene = Scene::parse(SCENE, "two.toml").unwrap();
+    let report = pack(&scene, &Builder::default(), &place("two.fmu"), &settings, |_| ()).unwrap();
     let file = std::fs::File::open(place("two.fmu")).unwrap();
     zip::ZipArchive::new(file).unwrap().extract(folder.path()).unwrap();
     let description = std::fs::read_to_string(place("modelDescription.xml")).unwrap();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use libfuzzer_sys::fuzz_target;
-use scene::{History, Scene};
+use scene::{Body, History};
 
 const SCENE: &str = include_str!("../../scene/src/text/example.toml");
 
@@ -22,7 +22,7 @@ static SETUP: LazyLock<(tempfile::TempDir, PathBuf, String)> = LazyLock::new(|| 
 fuzz_target!(|bytes: &[u8]| {
     let (folder, table, text) = &*SETUP;
     std::fs::write(table, bytes).unwrap();
-    match Scene::parse(text, folder.path().join("scene.toml")) {
+    match Body::parse(text, folder.path().join("scene.toml")) {
         Ok(scene) => {
             let History::Table(table) = &scene.loads[0].history else { panic!("not a table") };
             let (times, values) = table.points.iter().map(|[time, value]| (*time, *value)).unzip();

@@ -9,7 +9,7 @@ use fem_tet10::{AssemblyError, AssemblyFault, MeshError, MeshFault};
 use mesh_import::ImportError;
 use modal::ModalError;
 use nalgebra::Vector3;
-use scene::{Place, Scene, SceneError, one_of, shorten};
+use scene::{Body, Place, SceneError, one_of, shorten};
 use sealed::SealedError;
 
 /// A scene that cannot be built.
@@ -83,8 +83,8 @@ impl StartError {
     ///
     /// # Errors
     /// [`StartError::Tied`].
-    pub fn refuse_tied(scene: &Scene) -> Result<(), Self> {
-        if scene.tied { Err(Self::Tied { at: scene.place("body").into() }) } else { Ok(()) }
+    pub fn refuse_tied(body: &Body) -> Result<(), Self> {
+        if body.tied { Err(Self::Tied { at: body.place("body").into() }) } else { Ok(()) }
     }
 
     /// The message, which begins with the scene file.
@@ -107,9 +107,9 @@ impl StartError {
 
     /// At the key of the scene, where it is the step or an inertia.
     #[must_use]
-    pub fn at_key(self, scene: &Scene) -> Self {
+    pub fn at_key(self, given: &Body) -> Self {
         if let Self::Setup(SetupError::PointTurned { by, .. }) = self {
-            return Self::Point { at: scene.place("body.rigid.inertia").into(), by };
+            return Self::Point { at: given.place("body.rigid.inertia").into(), by };
         }
         let (step, limit, why, help) = match &self {
             Self::Setup(SetupError::StepBeyondLimit { step, limit, mode, frequency }) => (
@@ -135,12 +135,12 @@ impl StartError {
             _ => return self,
         };
         let (found, expected) = (format!("a step of {step:e}, beyond {why}"), format!("at most {limit:.4e}"));
-        Self::Step { at: scene.place("time.step").into(), found, expected, help }
+        Self::Step { at: given.place("time.step").into(), found, expected, help }
     }
 }
 
 /// An assembly error at its place in the scene file.
-pub(crate) fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneError {
+pub(crate) fn refuse(body: &Body, key: &str, error: AssemblyError) -> SceneError {
     let message = error.to_string();
     let mesh = error.mesh.unwrap_or_default();
     match error.fault {
@@ -148,62 +148,60 @@ pub(crate) fn refuse(scene: &Scene, key: &str, error: AssemblyError) -> SceneErr
             // A coordinate that is zero but for rounding is shown as zero.
             let size = Vector3::from(position).norm();
             let shown = position.map(|c| if c.abs() < 1e-9 * size { 0.0 } else { c });
-            if !scene.body.has_elements() {
-                return scene.refuse(
+            if !body.source.has_elements() {
+                return body.refuse(
                     key,
                     format!("a point without a node: the nearest one of {mesh} is {distance:.6} away"),
                     "a node: the elements between the nodes of a body of matrices are not known",
                     format!("use its node {node} at {shown:?}"),
                 );
             }
-            scene.refuse(
+            body.refuse(
                 key,
                 format!("a point that is not on the body: the nearest node of {mesh} is {distance:.6} away"),
                 "a point of the body",
                 format!("use a point of the body; its node {node} is at {shown:?}"),
             )
         }
-        AssemblyFault::Spread { radius, count, distance, .. } => scene.refuse(
+        AssemblyFault::Spread { radius, count, distance, .. } => body.refuse(
             key,
             format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),
             "nodes all around the point that can carry the mass",
             "use a larger spread, or leave it out for a point of the body",
         ),
-        AssemblyFault::Patch { radius, count, distance, .. } => scene.refuse(
+        AssemblyFault::Patch { radius, count, distance, .. } => body.refuse(
             key,
             format!("{count} node(s) within {radius}, the nearest {distance:.6} away"),
             "three nodes or more, not on a line, that can take the moment",
             "use a larger radius, or leave it out for a point of the body",
         ),
-        AssemblyFault::MissingGroup { group, present, .. } => scene.refuse(
+        AssemblyFault::MissingGroup { group, present, .. } => body.refuse(
             key,
             format!("the physical volume \"{}\", which the mesh has not", shorten(&group)),
             one_of(&present),
             "rename it, or name the volume in the geometry and mesh again",
         ),
-        _ => scene.refuse(key, message, "something that fits the mesh", "correct it"),
+        _ => body.refuse(key, message, "something that fits the mesh", "correct it"),
     }
 }
 
 /// A mesh error, such as a group that is not there, at its place in the scene file.
-pub(crate) fn refuse_mesh(scene: &Scene, key: &str, error: &MeshError) -> BuildError {
+pub(crate) fn refuse_mesh(body: &Body, key: &str, error: &MeshError) -> BuildError {
     if let MeshFault::NoGroup { kind, group, present } = &error.fault {
-        let (what, help) = if scene.body.has_elements() {
+        let (what, help) = if body.source.has_elements() {
             ("mesh", "use one of these, or name it in the geometry and mesh again")
         } else {
             ("body", "use one of these, or add it to the groups in the table of nodes (*NSET in an .inp file)")
         };
         let found = format!("the physical {kind} \"{}\", which the {what} has not", shorten(group));
-        return scene.refuse(key, found, one_of(present), help).into();
+        return body.refuse(key, found, one_of(present), help).into();
     }
-    scene
-        .refuse(key, error.to_string(), "something that the mesh has", "name it in the geometry, and mesh again")
-        .into()
+    body.refuse(key, error.to_string(), "something that the mesh has", "name it in the geometry, and mesh again").into()
 }
 
-pub(crate) fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
+pub(crate) fn too_many_modes(body: &Body, error: ModalError) -> BuildError {
     match error {
-        ModalError::TooManyModes { available: 0, .. } => scene
+        ModalError::TooManyModes { available: 0, .. } => body
             .refuse(
                 "constraints[0]",
                 "a support that holds every node of the body",
@@ -211,7 +209,7 @@ pub(crate) fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
                 "hold fewer nodes, or set `flexible = 0` in [modes]",
             )
             .into(),
-        ModalError::TooManyModes { requested, available } => scene
+        ModalError::TooManyModes { requested, available } => body
             .refuse(
                 "modes.flexible",
                 requested.to_string(),
@@ -219,13 +217,13 @@ pub(crate) fn too_many_modes(scene: &Scene, error: ModalError) -> BuildError {
                 "ask for fewer modes, or use a finer mesh",
             )
             .into(),
-        other => modal(scene)(other),
+        other => modal(body)(other),
     }
 }
 
 /// Adds the scene file to errors of the modal analysis, which know no file.
-pub(crate) fn modal<E: Into<ModalError>>(scene: &Scene) -> impl Fn(E) -> BuildError {
-    |source| BuildError::Modal { scene: scene.path.clone(), source: source.into() }
+pub(crate) fn modal<E: Into<ModalError>>(body: &Body) -> impl Fn(E) -> BuildError {
+    |source| BuildError::Modal { scene: body.path.clone(), source: source.into() }
 }
 
 impl Diagnostic for BuildError {

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use diagnostic::{Diagnosis, Diagnostic};
 use nonlinear::{FullBody, NonlinearError};
-use scene::Scene;
+use scene::Body;
 
 use crate::building::assembly::{Assembled, AssembledMesh};
 use crate::building::builder::Builder;
@@ -57,16 +57,16 @@ impl Builder {
     ///
     /// # Errors
     /// As [`Builder::build`].
-    pub fn full(&self, scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<Option<FullModel>, BuildError> {
+    pub fn full(&self, body: &Body, progress: impl FnMut(BuildProgress)) -> Result<Option<FullModel>, BuildError> {
         let builder = Builder { cache: self.cache.with_own_notes(), ..self.clone() };
-        let Assembled::Meshed(assembled) = builder.assemble(scene, progress)?.0 else { return Ok(None) };
+        let Assembled::Meshed(assembled) = builder.assemble(body, progress)?.0 else { return Ok(None) };
         if assembled.elements().is_none() {
             return Ok(None);
         }
         let FeMatrices::Assembled(matrices) = assembled.matrices()? else { return Ok(None) };
-        let weight = Arc::new(UnitWeight::of_elements(matrices).map_err(crate::error::modal(scene))?);
+        let weight = Arc::new(UnitWeight::of_elements(matrices).map_err(crate::error::modal(body))?);
         let loads = mesh_load::on_mesh(&assembled.needed(), &assembled.mesh, 3, &weight)?;
-        let markers = mesh_marker::on_mesh(scene, &assembled.mesh, 3)?;
+        let markers = mesh_marker::on_mesh(body, &assembled.mesh, 3)?;
         Ok(Some(FullModel { assembled, loads, markers }))
     }
 }

@@ -18,7 +18,7 @@ use frames_rk4::Paper;
 use modal::{Modes, NoCycles};
 use nalgebra::Vector3;
 use reduced_body::ReducedBody;
-use scene::{Choice, MeshedBody, Scene};
+use scene::{Body, Choice, MeshedBody};
 
 use crate::building::progress::BuildTimes;
 use crate::error::StartError;
@@ -69,7 +69,7 @@ pub struct Model {
     pub physics: Physics,
     /// The points whose motion is written out, by name.
     pub points: Vec<(String, PointShapes)>,
-    /// Places with axes, in the order of [`Scene::markers`].
+    /// Places with axes, in the order of [`Body::markers`].
     pub markers: Vec<BodyMarker>,
     /// The paper's scheme with the scene's reference points.
     pub paper: Paper,
@@ -132,9 +132,9 @@ impl Model {
 
     /// The parts of the run of its scene where forces are added that the estimates do not know: the physics, the loads and the
     /// damping ratio of each flexible mode. Effects are on as by [`Needs::external_inputs`].
-    pub fn under_unknown_forces(&self, scene: &Scene) -> (Physics, Vec<SharedLoad>, Vec<f64>) {
+    pub fn under_unknown_forces(&self, body: &Body) -> (Physics, Vec<SharedLoad>, Vec<f64>) {
         let mut physics = self.physics.clone();
-        for effect in Needed::new(scene, &Needs::default()).on_under_unknown_forces() {
+        for effect in Needed::new(body, &Needs::default()).on_under_unknown_forces() {
             physics.effects[effect] = true;
         }
         (physics, self.all_loads.clone(), self.all_damping_ratios.clone())
@@ -150,7 +150,7 @@ impl Model {
     ///
     /// # Errors
     /// [`LoadedError`].
-    pub fn loaded_modes(&self, scene: &Scene) -> Result<Vec<LoadedMode>, LoadedError> {
+    pub fn loaded_modes(&self, given: &Body) -> Result<Vec<LoadedMode>, LoadedError> {
         let turns = self.physics.drive.is_some() || !self.body.motion.rotations().is_empty();
         let is_steady = |load: &&SharedLoad| {
             let follows = load.pattern().is_some_and(|pattern| pattern.frame != LoadFrame::Global);
@@ -159,7 +159,7 @@ impl Model {
         let steady = self.loads.iter().filter(is_steady).cloned().collect();
         let physics = Physics { drive: None, drive_stiffness: None, ..self.physics.clone() };
         let body = ConservativeBody::new(&self.body, &self.damping_ratios, steady, &physics)?;
-        body.loaded_modes(&self.initial(scene), &self.small_amplitudes())
+        body.loaded_modes(&self.initial(given), &self.small_amplitudes())
     }
 
     /// Modal displacements (nf) that are small.
@@ -214,12 +214,12 @@ impl Model {
     }
 
     /// The state that a scene begins with, its lists padded with zeros.
-    pub fn initial(&self, scene: &Scene) -> Initial {
-        initial(scene, &self.body)
+    pub fn initial(&self, body: &Body) -> Initial {
+        initial(body, &self.body)
     }
 
     /// The run as [`advice`] sees it, which begins with `initial`.
-    pub fn case<'a>(&'a self, scene: &'a Scene, initial: &'a Initial) -> Case<'a> {
+    pub fn case<'a>(&'a self, body: &'a Body, initial: &'a Initial) -> Case<'a> {
         Case {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
@@ -227,9 +227,9 @@ impl Model {
             is_gravity: &[],
             drive: self.physics.drive.as_ref(),
             initial,
-            end: scene.time.end,
+            end: body.time.end,
             length: self.size.length,
-            length_unit: &scene.units.length,
+            length_unit: &body.units.length,
             peaks: &self.size.peaks,
             static_compliances: &[],
             centrifugal_remainders: &self.left_out.of_spin,
@@ -244,9 +244,9 @@ impl Model {
     ///
     /// # Errors
     /// [`StartError`], e.g. a step beyond the stability limit.
-    pub fn start(&self, scene: &Scene) -> Result<Simulation, StartError> {
-        let started = self.start_with(scene, *scene.method(), scene.time.control, scene.rows);
-        started.map_err(|error| error.at_key(scene))
+    pub fn start(&self, body: &Body) -> Result<Simulation, StartError> {
+        let started = self.start_with(body, *body.method(), body.time.control, body.rows);
+        started.map_err(|error| error.at_key(body))
     }
 
     /// The motion of a scene by another method, in other steps or with other rows than its own.
@@ -255,19 +255,19 @@ impl Model {
     /// As [`Model::start`].
     pub fn start_with(
         &self,
-        scene: &Scene,
+        body: &Body,
         method: dynamics::Method,
         control: StepControl,
         rows: Rows,
     ) -> Result<Simulation, StartError> {
-        StartError::refuse_tied(scene)?;
-        if let Some(refusal) = self.refusal.filter(|_| scene.effects.refuse) {
+        StartError::refuse_tied(body)?;
+        if let Some(refusal) = self.refusal.filter(|_| body.effects.refuse) {
             return Err(refusal.into());
         }
         let points: Vec<PointShapes> = self.points.iter().map(|(_, point)| point.clone()).collect();
-        let initial = self.initial(scene);
+        let initial = self.initial(body);
         let method = self.paper.or(&method);
-        let setup = Setup { method, control, rows, points: &points, ..self.setup(scene, &initial) };
+        let setup = Setup { method, control, rows, points: &points, ..self.setup(body, &initial) };
         Ok(Simulation::new(&setup)?)
     }
 
@@ -275,24 +275,24 @@ impl Model {
     ///
     /// # Errors
     /// As [`Model::start`].
-    pub fn step_estimate(&self, scene: &Scene) -> Result<Option<StepEstimate>, StartError> {
-        Ok(advice::step_estimate(&self.setup(scene, &self.initial(scene)))?)
+    pub fn step_estimate(&self, body: &Body) -> Result<Option<StepEstimate>, StartError> {
+        Ok(advice::step_estimate(&self.setup(body, &self.initial(body)))?)
     }
 
     /// The setup that [`Simulation::new`] needs for the run of a scene, without its points. Loads, steps or anything else
     /// may be
     /// replaced.
-    pub fn setup<'a>(&'a self, scene: &'a Scene, initial: &'a Initial) -> Setup<'a> {
+    pub fn setup<'a>(&'a self, body: &'a Body, initial: &'a Initial) -> Setup<'a> {
         Setup {
             body: &self.body,
             damping_ratios: &self.damping_ratios,
             loads: &self.loads,
             physics: &self.physics,
             initial,
-            method: self.paper.or(scene.method()),
-            control: scene.time.control,
-            end: scene.time.end,
-            rows: scene.rows,
+            method: self.paper.or(body.method()),
+            control: body.time.control,
+            end: body.time.end,
+            rows: body.rows,
             points: &[],
         }
     }

@@ -3,7 +3,7 @@
 use std::ops::Deref;
 
 use dynamics::{Effect, EffectMap, Method};
-use scene::{Body, Choice, Effects, Flexible, Large, Load, Modes, Scene};
+use scene::{Body, BodySource, Choice, Effects, Flexible, Large, Load, Modes};
 
 /// Effects of bodies with modes and without; all others need modes.
 const OF_ANY_BODY: [Effect; 3] = [Effect::Translation, Effect::Rotation, Effect::Gravity];
@@ -93,8 +93,8 @@ impl Needs {
     }
 
     /// The method of the motion of a body.
-    pub fn method_of(&self, scene: &Scene) -> Method {
-        self.method.unwrap_or(*scene.method())
+    pub fn method_of(&self, body: &Body) -> Method {
+        self.method.unwrap_or(*body.method())
     }
 
     /// Small vibrations that no load of the scene sets off: damping is on where the scene leaves it open.
@@ -130,7 +130,7 @@ impl Needs {
 /// The body of a scene with the needs of a command: the same names tell what is wanted where that may be other than the scene says.
 #[derive(Debug, Clone)]
 pub(crate) struct Needed<'a> {
-    scene: &'a Scene,
+    scene: &'a Body,
     method: Method,
     pub modes: Modes,
     pub effects: Effects,
@@ -145,16 +145,16 @@ pub(crate) struct Needed<'a> {
 }
 
 impl Deref for Needed<'_> {
-    type Target = Scene;
+    type Target = Body;
 
-    fn deref(&self) -> &Scene {
+    fn deref(&self) -> &Body {
         self.scene
     }
 }
 
 impl<'a> Needed<'a> {
-    pub fn new(scene: &'a Scene, needs: &Needs) -> Self {
-        let mut modes = scene.modes.clone();
+    pub fn new(body: &'a Body, needs: &Needs) -> Self {
+        let mut modes = body.modes.clone();
         modes.flexible = match needs.flexible {
             Some(ModeCount::All) => Flexible::Count(modes.flexible.most()),
             Some(ModeCount::Count(count)) => Flexible::Count(count),
@@ -164,19 +164,19 @@ impl<'a> Needed<'a> {
         modes.large = needs.large.clone().map(Large::List).or(modes.large);
         modes.following = needs.following.unwrap_or(modes.following);
         modes.static_correction = needs.static_correction.map_or(modes.static_correction, choice);
-        let mut effects = scene.effects;
+        let mut effects = body.effects;
         for effect in Effect::ALL {
             effects.choices[effect] = needs.effects[effect].map_or(effects.choices[effect], choice);
         }
         let mut needed = Self {
-            scene,
-            method: needs.method_of(scene),
+            scene: body,
+            method: needs.method_of(body),
             modes,
             effects,
-            loads: if needs.loads { &scene.loads } else { &[] },
-            stress: needs.rows && scene.output.stress,
-            peak_stress: needs.rows && !needs.external_inputs && scene.output.peak_stress,
-            stress_field: needs.stress_field && scene.body.has_elements(),
+            loads: if needs.loads { &body.loads } else { &[] },
+            stress: needs.rows && body.output.stress,
+            peak_stress: needs.rows && !needs.external_inputs && body.output.peak_stress,
+            stress_field: needs.stress_field && body.source.has_elements(),
             support_reactions: needs.rows && !needs.external_inputs,
             backbones: needs.backbones,
         };
@@ -210,7 +210,7 @@ impl<'a> Needed<'a> {
 
     /// The effects that the body can have and the scene neither switches on nor off.
     fn left_open(&self, effects: &[Effect]) -> Vec<Effect> {
-        let has_modes = !matches!(self.body, Body::Rigid(_))
+        let has_modes = !matches!(self.source, BodySource::Rigid(_))
             && self.modes.flexible.most() > 0
             && self.effects.choices[Effect::Flexibility] != Choice::Off;
         let can_be = |effect: Effect| has_modes || OF_ANY_BODY.contains(&effect);

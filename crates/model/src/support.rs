@@ -9,7 +9,7 @@ use fem_tet10::Mesh;
 use modal::Support;
 use nalgebra::Vector3;
 use reduced_body::RigidMotion;
-use scene::{Constraint, HeldDirections, HingeLine, Region, Scene, key_path};
+use scene::{Body, Constraint, HeldDirections, HingeLine, Region, key_path};
 
 use crate::error::{BuildError, modal, refuse_mesh};
 use crate::load::history::history;
@@ -24,18 +24,18 @@ const FEWEST: usize = 3;
 
 /// The support of a scene's body and its drive. `mesh`, with the degrees of freedom of a node, is `None` for a rigid body
 /// without one.
-pub(crate) fn support(scene: &Scene, mesh: Option<(&Mesh, usize)>) -> Result<(Support, Option<Drive>), BuildError> {
-    let Some(constraint) = scene.reduced_constraint() else { return Ok((Support::free(), None)) };
+pub(crate) fn support(body: &Body, mesh: Option<(&Mesh, usize)>) -> Result<(Support, Option<Drive>), BuildError> {
+    let Some(constraint) = body.reduced_constraint() else { return Ok((Support::free(), None)) };
     if let (Constraint::Support { parts }, Some((mesh, _))) = (constraint, mesh) {
-        return Ok((held_directions(scene, mesh, parts)?, None));
+        return Ok((held_directions(body, mesh, parts)?, None));
     }
     let nodes = match mesh {
-        Some((mesh, dofs)) => held_nodes(scene, mesh, constraint, dofs)?,
+        Some((mesh, dofs)) => held_nodes(body, mesh, constraint, dofs)?,
         None => Vec::new(),
     };
     let mesh = mesh.map(|(mesh, _)| mesh);
     let driven = |speed: &scene::DrivenSpeed, motion: DrivenMotion| -> Result<Drive, BuildError> {
-        let history = history(scene, "constraints[0].motion.history", &speed.history)?;
+        let history = history(body, "constraints[0].motion.history", &speed.history)?;
         Ok(Drive { motion, speed: DrivenSpeed { amplitude: speed.amplitude, history }, added: None })
     };
     let mean = || {
@@ -64,31 +64,31 @@ pub(crate) fn support(scene: &Scene, mesh: Option<(&Mesh, usize)>) -> Result<(Su
 }
 
 /// The support that holds parts of the mesh in some directions.
-fn held_directions(scene: &Scene, mesh: &Mesh, parts: &[HeldDirections]) -> Result<Support, BuildError> {
-    let dofs = held_parts(scene, mesh, parts)?.concat();
-    let support = Support::of_dofs(mesh.positions(), &dofs).map_err(modal(scene))?;
+fn held_directions(body: &Body, mesh: &Mesh, parts: &[HeldDirections]) -> Result<Support, BuildError> {
+    let dofs = held_parts(body, mesh, parts)?.concat();
+    let support = Support::of_dofs(mesh.positions(), &dofs).map_err(modal(body))?;
     let motion = &support.motion;
     // Where another motion is left, there is no run.
     if motion.others().is_empty() {
         let (translations, rotations) = (motion.translations(), motion.rotations());
-        let attitude = first_attitude(scene);
+        let attitude = first_attitude(body);
         let global: Vec<_> = translations.iter().map(|direction| attitude.to_global(direction)).collect();
-        require_left(scene, "initial.velocity", scene.initial.velocity, &global, motion)?;
-        require_left(scene, "initial.angular_velocity", scene.initial.angular_velocity, rotations, motion)?;
+        require_left(body, "initial.velocity", body.initial.velocity, &global, motion)?;
+        require_left(body, "initial.angular_velocity", body.initial.angular_velocity, rotations, motion)?;
     }
     Ok(support)
 }
 
 /// The degrees of freedom, by node, that each part holds; one that several hold is the first one's.
 pub(crate) fn held_parts(
-    scene: &Scene,
+    body: &Body,
     mesh: &Mesh,
     parts: &[HeldDirections],
 ) -> Result<Vec<Vec<(u32, usize)>>, BuildError> {
     let mut held = HashSet::new();
     let mut of_parts = Vec::with_capacity(parts.len());
     for (i, HeldDirections { region, directions }) in parts.iter().enumerate() {
-        let nodes = region_nodes(scene, mesh, region, &format!("constraints[{i}]"), 1)?;
+        let nodes = region_nodes(body, mesh, region, &format!("constraints[{i}]"), 1)?;
         let directions = || (0..3).filter(|axis| directions[*axis]);
         let dofs = nodes.iter().flat_map(|node| directions().map(move |axis| (*node, axis)));
         of_parts.push(dofs.filter(|dof| held.insert(*dof)).collect());
@@ -98,7 +98,7 @@ pub(crate) fn held_parts(
 
 /// Refuses an initial velocity that the supports prevent; `left` are three directions, one or none.
 fn require_left(
-    scene: &Scene,
+    body: &Body,
     key: &str,
     value: [f64; 3],
     left: &[Vector3<f64>],
@@ -117,12 +117,12 @@ fn require_left(
         return Ok(());
     }
     let expected = format!("{expected}: the supports leave the body {motion}");
-    Err(scene.refuse(key, format!("{value:?}"), expected, "give what is left of it, or change [[constraints]]").into())
+    Err(body.refuse(key, format!("{value:?}"), expected, "give what is left of it, or change [[constraints]]").into())
 }
 
 /// The nodes that a constraint holds, other than supports in some directions.
 pub(crate) fn held_nodes(
-    scene: &Scene,
+    body: &Body,
     mesh: &Mesh,
     constraint: &Constraint,
     dofs: usize,
@@ -136,7 +136,7 @@ pub(crate) fn held_nodes(
             return Ok(node);
         }
         let position = mesh.positions()[node as usize];
-        Err(scene
+        Err(body
             .refuse(
                 key,
                 format!("a point without a node: the nearest one is {distance:.6} away"),
@@ -148,7 +148,7 @@ pub(crate) fn held_nodes(
     match constraint {
         Constraint::Pin { at, radius: None } => Ok(vec![nearest("constraints[0].at", *at)?]),
         Constraint::Pin { at, radius: Some(radius) } => {
-            region_nodes(scene, mesh, &Region::Ball { at: *at, radius: *radius }, "constraints[0].radius", fewest)
+            region_nodes(body, mesh, &Region::Ball { at: *at, radius: *radius }, "constraints[0].radius", fewest)
         }
         Constraint::Hinge { line: HingeLine::Points(points), shaft, .. } if shaft.is_empty() => {
             points.iter().map(|at| nearest("constraints[0].points", *at)).collect()
@@ -158,7 +158,7 @@ pub(crate) fn held_nodes(
             if nodes.len() >= fewest_on_axis {
                 return Ok(nodes);
             }
-            Err(scene
+            Err(body
                 .refuse(
                     "constraints[0].axis",
                     format!("a line with {} node(s) of the mesh on it", nodes.len()),
@@ -170,14 +170,14 @@ pub(crate) fn held_nodes(
         Constraint::Hinge { shaft, .. } => {
             let mut nodes = Vec::new();
             for region in shaft {
-                nodes.extend(region_nodes(scene, mesh, region, "constraints[0]", fewest)?);
+                nodes.extend(region_nodes(body, mesh, region, "constraints[0]", fewest)?);
             }
             nodes.sort_unstable();
             nodes.dedup();
             Ok(nodes)
         }
         Constraint::Clamp { region } | Constraint::Slider { region: Some(region), .. } => {
-            region_nodes(scene, mesh, region, "constraints[0]", fewest)
+            region_nodes(body, mesh, region, "constraints[0]", fewest)
         }
         Constraint::Slider { region: None, .. } | Constraint::Support { .. } => Ok(Vec::new()),
     }
@@ -185,7 +185,7 @@ pub(crate) fn held_nodes(
 
 /// The nodes of a region, which has at least `fewest`.
 pub(crate) fn region_nodes(
-    scene: &Scene,
+    body: &Body,
     mesh: &Mesh,
     region: &Region,
     key: &str,
@@ -199,13 +199,13 @@ pub(crate) fn region_nodes(
             mesh.nodes_in_box(low.map(|x| x - slack), high.map(|x| x + slack))
         }
         Region::Group(name) => {
-            mesh.group_nodes(name).map_err(|error| refuse_mesh(scene, &key_path(key, "group"), &error))?
+            mesh.group_nodes(name).map_err(|error| refuse_mesh(body, &key_path(key, "group"), &error))?
         }
     };
     if nodes.len() >= fewest {
         return Ok(nodes);
     }
-    Err(scene
+    Err(body
         .refuse(
             key,
             format!("a part of the body with {} node(s) in it", nodes.len()),

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use dynamics::{Observation, Reached};
 use model::Model;
-use scene::Scene;
+use scene::Body;
 
 const UNITS: &str = "title = \"t\"\nunits = { length = \"m\", mass = \"kg\", time = \"s\" }\n";
 const STONE: &str = "[body.rigid]\nmass = 2.0\ncenter_of_mass = [1.0, 2.0, 3.0]\n\
@@ -159,17 +159,17 @@ fn is_finite(now: &Observation) -> bool {
 /// Reads, builds, starts and steps a scene.
 fn run(text: &str) -> (Ended, String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/hostile.toml");
-    let scene = match Scene::parse(text, path) {
-        Ok(scene) => scene,
+    let body = match Body::parse(text, path) {
+        Ok(body) => body,
         Err(error) => return (Ended::Unread, message(error)),
     };
-    let model = match Model::build(&scene, |_| ()) {
+    let model = match Model::build(&body, |_| ()) {
         Ok(model) => model,
         Err(error) => return (Ended::Unbuilt, message(error)),
     };
     let numbers = model.natural_frequencies().into_iter().chain(model.damping_ratios().iter().copied());
     assert!(numbers.chain([model.body.mass]).all(f64::is_finite), "{text}");
-    let mut motion = match model.start(&scene) {
+    let mut motion = match model.start(&body) {
         Ok(motion) => motion,
         Err(error) => return (Ended::Unstarted, message(error)),
     };

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use dynamics::Reached;
 use model::{Builder, Model};
-use scene::{Scene, StepControl};
+use scene::{Body, StepControl};
 
 /// A rigid body on a hinge; step control; a formula, static shapes, and fixed steps of a driven body; large modes under a tip load.
 const SCENES: [&str; 4] = ["pendulum", "ring", "spin_up", "boom"];
@@ -15,11 +15,11 @@ const ACCEPT: &str = "FLEXFRAME_ACCEPT";
 /// The counts of a scene, a line for each stage.
 fn counts(name: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let scene = Scene::read(root.join("examples").join(name).with_extension("toml")).unwrap();
+    let body = Body::read(root.join("examples").join(name).with_extension("toml")).unwrap();
     let builder = Builder::default();
-    let assembly = builder.assemble(&scene, |_| ()).unwrap();
+    let assembly = builder.assemble(&body, |_| ()).unwrap();
     let mut variants = assembly.variants().unwrap();
-    let model = variants.build(&scene, &builder.needs, |_| ()).unwrap();
+    let model = variants.build(&body, &builder.needs, |_| ()).unwrap();
     let work = variants.work();
     let mut text = format!("{name}\n");
     if let Some(meshed) = &model.meshed {
@@ -32,13 +32,13 @@ fn counts(name: &str) -> String {
         writeln!(text, "  all of it   {blocks} block solves, {columns} columns, {passes} passes over the elements")
             .unwrap();
     }
-    writeln!(text, "{}", run(&scene, &model)).unwrap();
+    writeln!(text, "{}", run(&body, &model)).unwrap();
     text
 }
 
 /// The counts of the time loop.
-fn run(scene: &Scene, model: &Model) -> String {
-    let mut simulation = model.start(scene).unwrap();
+fn run(body: &Body, model: &Model) -> String {
+    let mut simulation = model.start(body).unwrap();
     let mut rows = 0;
     let allocated = allocation_counter::measure(|| {
         loop {
@@ -50,7 +50,7 @@ fn run(scene: &Scene, model: &Model) -> String {
     });
     let stats = simulation.stats();
     // Counts of a run by `tolerance` go by rounding, and so by the vectors of the processor.
-    let count = |count: u64| match scene.time.control {
+    let count = |count: u64| match body.time.control {
         StepControl::Fixed(_) => count.to_string(),
         StepControl::Tolerance(_) => format!("about {:.1e}", count as f64),
     };

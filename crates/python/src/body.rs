@@ -6,7 +6,7 @@ use diagnostic::Failure;
 use flexframe::faer::{ColRef, MatRef};
 use flexframe::model::{Assembly, BuildError, BuildProgress, Meshed, Model, Needs};
 use flexframe::modes::frequency_unit;
-use flexframe::plausible::doubts_of_scene;
+use flexframe::plausible::doubts_of_body;
 use flexframe::report::{BodyReport, quantity};
 use numpy::ndarray::ArrayView1;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyArrayMethods};
@@ -34,7 +34,7 @@ use crate::values::numbers::numbers;
 pub(crate) struct Body {
     scene: Py<Scene>,
     /// The scene of this body.
-    of: Arc<flexframe::scene::Scene>,
+    of: Arc<flexframe::scene::Body>,
     model: Arc<Model>,
     /// The assembly that other scenes of the same body share with it.
     assembly: Arc<Assembly>,
@@ -45,7 +45,7 @@ impl Body {
         &self.model
     }
 
-    pub(crate) fn scene_of(&self) -> &Arc<flexframe::scene::Scene> {
+    pub(crate) fn scene_of(&self) -> &Arc<flexframe::scene::Body> {
         &self.of
     }
 
@@ -90,7 +90,7 @@ impl Body {
     #[new]
     fn new(py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
         let of = scene.get().scene(py)?.clone();
-        warn(py, doubts_of_scene(&of))?;
+        warn(py, doubts_of_body(&of))?;
         let (of_thread, builder) = (of.clone(), scene.get().builder().clone());
         let build = move |told: &mut dyn FnMut(BuildProgress)| {
             let assembly = builder.assemble(&of_thread, &mut *told)?;

@@ -31,8 +31,8 @@ const NAME: &str = "scene";
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Scene {
     /// One for each body.
-    system: Arc<flexframe::scene::System>,
-    scenes: Vec<Arc<flexframe::scene::Scene>>,
+    system: Arc<flexframe::scene::Scene>,
+    scenes: Vec<Arc<flexframe::scene::Body>>,
     /// The body that was named.
     body: Option<String>,
     builder: Builder,
@@ -43,7 +43,7 @@ const UNPICKLE: &str = "_scene";
 
 impl Scene {
     /// The scene of its only body.
-    pub(crate) fn scene(&self, py: Python<'_>) -> PyResult<&Arc<flexframe::scene::Scene>> {
+    pub(crate) fn scene(&self, py: Python<'_>) -> PyResult<&Arc<flexframe::scene::Body>> {
         match &self.scenes[..] {
             [scene] => Ok(scene),
             several => {
@@ -55,7 +55,7 @@ impl Scene {
     }
 
     /// Its bodies with what ties them together.
-    pub(crate) fn system(&self) -> &Arc<flexframe::scene::System> {
+    pub(crate) fn system(&self) -> &Arc<flexframe::scene::Scene> {
         &self.system
     }
 
@@ -67,8 +67,8 @@ impl Scene {
     fn parsed(py: Python<'_>, text: &str, path: PathBuf, body: Option<String>, builder: Builder) -> PyResult<Self> {
         // Tables of histories are read, too.
         let system = detached(py, || match &body {
-            Some(body) => Ok(flexframe::scene::Scene::parse_body(text, path, Some(body))?.into()),
-            None => flexframe::scene::System::parse(text, path),
+            Some(body) => Ok(flexframe::scene::Body::parse_body(text, path, Some(body))?.into()),
+            None => flexframe::scene::Scene::parse(text, path),
         })?;
         let system = Arc::new(system.map_err(|error: SceneError| exception(py, &error))?);
         let scenes = system.bodies.iter().cloned().map(Arc::new).collect();
@@ -144,7 +144,7 @@ impl Scene {
     /// Names of its bodies; "body" is that of a single one.
     #[getter]
     fn bodies(&self) -> Vec<&str> {
-        self.scenes.iter().map(|scene| scene.name.as_deref().unwrap_or("body")).collect()
+        self.scenes.iter().map(|body| body.name.as_deref().unwrap_or("body")).collect()
     }
 
     /// The scene file, or `base` and `name` of a dict.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use flexframe::model::{BuildProgress, Model};
-use flexframe::plausible::doubts_of_system;
+use flexframe::plausible::doubts_of_scene;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -22,7 +22,7 @@ pub(crate) struct System {
 
 impl System {
     /// Its bodies with what ties them together.
-    pub(crate) fn system(&self) -> &Arc<flexframe::scene::System> {
+    pub(crate) fn system(&self) -> &Arc<flexframe::scene::Scene> {
         self.scene.get().system()
     }
 
@@ -36,7 +36,7 @@ impl System {
     #[new]
     fn new(py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
         let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-        warn(py, doubts_of_system(&system))?;
+        warn(py, doubts_of_scene(&system))?;
         let build = move |told: &mut dyn FnMut(BuildProgress)| {
             system.bodies.iter().map(|of| builder.build(of, &mut *told).map(Arc::new)).collect()
         };
@@ -57,7 +57,7 @@ impl System {
     /// Names of its bodies.
     #[getter]
     fn bodies(&self) -> Vec<String> {
-        let name = |scene: &flexframe::scene::Scene| scene.name.clone().unwrap_or_else(|| "body".to_owned());
+        let name = |body: &flexframe::scene::Body| body.name.clone().unwrap_or_else(|| "body".to_owned());
         self.system().bodies.iter().map(name).collect()
     }
 

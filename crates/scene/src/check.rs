@@ -17,10 +17,10 @@ use std::cell::Cell;
 
 use nalgebra::Vector3;
 
+use crate::body::Frame;
 use crate::document::{Document, join};
 use crate::error::SceneError;
 use crate::loads::unit_vector::unit;
-use crate::scene::Frame;
 use crate::text::shorten::shorten;
 
 /// Three points whose triangle has an angle with a smaller sine count as lying on one line.

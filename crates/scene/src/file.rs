@@ -1,15 +1,16 @@
-//! From the scene file to a [`Scene`].
+//! From the scene file to a [`Body`].
 
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
 
 use crate::alone::{BodyText, BodyTexts};
+use crate::body::Body;
 use crate::check::Check;
 use crate::document::{BODIES, Document, Node};
 use crate::error::SceneError;
-use crate::scene::{Scene, Shared};
 use crate::section::Sections;
+use crate::shared::Shared;
 use crate::text::name::ONLY_BODY;
 use crate::text::ordinary_file::open_ordinary;
 use crate::text::place::Place;
@@ -18,7 +19,7 @@ use crate::text::place::Place;
 /// memory. Long tables of numbers have files of their own.
 const LONGEST: u64 = 1 << 20;
 
-impl Scene {
+impl Body {
     /// Reads and checks a scene file.
     ///
     /// # Errors
@@ -32,7 +33,7 @@ impl Scene {
     /// Checks the text of a scene file of one body. `path` is where the text comes from: it is named in
     /// messages, and the mesh and the tables of histories are relative to its folder. Of the
     /// files that it names, the tables are read, up to 16 MiB in all; the mesh is not. Joints, springs and bushings
-    /// are those of a [`System`](crate::System), and not looked at.
+    /// are those of a [`Scene`](crate::Scene), and not looked at.
     ///
     /// # Errors
     /// [`SceneError`] if the text is longer than 1 MiB, is not TOML, breaks a rule of the scene file, or has several bodies.
@@ -43,7 +44,7 @@ impl Scene {
     /// The same, of the body with a name among several.
     ///
     /// # Errors
-    /// As [`Scene::parse`]; also if there is no body of that name.
+    /// As [`Body::parse`]; also if there is no body of that name.
     pub fn parse_body(text: &str, path: impl AsRef<Path>, name: Option<&str>) -> Result<Self, SceneError> {
         let path = path.as_ref();
         refuse_long(text.len(), path)?;
@@ -74,7 +75,7 @@ impl Scene {
         }
     }
 
-    /// Checks the scene of a document, which may be one body of several. `ties` are the joints and springs of the file; `shared` is the
+    /// Checks a body of a document, which may be one of several. `ties` are the joints and springs of the file; `shared` is the
     /// shared part of the file, if an earlier body has been read with it.
     pub(crate) fn of_document(
         document: &Document<'_>,
@@ -89,22 +90,22 @@ impl Scene {
         check.label("title", &title)?;
         check.units(&units)?;
         let markers = std::mem::take(&mut body.markers);
-        let body = check.body(body)?;
-        let mut markers = check.markers(markers, &body)?;
-        let modes = check.modes(modes, &body)?;
+        let source = check.source(body)?;
+        let mut markers = check.markers(markers, &source)?;
+        let modes = check.modes(modes, &source)?;
         check.frame(frame.as_ref())?;
-        let constraint = check.constraints(constraints, &body)?;
+        let constraint = check.constraints(constraints, &source)?;
         check.initial(&initial, &modes, constraint.as_ref())?;
-        check.loads(&mut loads, &body, constraint.as_ref())?;
+        check.loads(&mut loads, &source, constraint.as_ref())?;
         check.effects(&effects, &modes, &initial, constraint.as_ref(), &loads, !markers.is_empty())?;
-        check.effects_of_elements(&effects, &modes, &body)?;
+        check.effects_of_elements(&effects, &modes, &source)?;
         let time = check.time(&time, ties.is_some())?;
         check.fixed_effects(&effects, time.method)?;
-        let (rows, output) = check.output(output, &time, &body)?;
+        let (rows, output) = check.output(output, &time, &source)?;
         let tied = ties.is_some_and(|ties| ties.ties(body_text.as_ref().map_or(ONLY_BODY, |text| text.name)));
         match &constraint {
             Some(constraint) if tied => check.held_markers(constraint, &mut markers),
-            _ if !tied => check.turns(&body)?,
+            _ if !tied => check.turns(&source)?,
             _ => {}
         }
         let of_file = || Shared {
@@ -119,7 +120,7 @@ impl Scene {
         Ok(Self {
             name: body_text.as_ref().map(|text| text.name.to_owned()),
             shared: shared.unwrap_or_else(|| Arc::new(of_file())),
-            body,
+            source,
             modes,
             effects,
             frame,
@@ -129,7 +130,7 @@ impl Scene {
             markers,
             loads,
             output,
-            source: body_text.map_or_else(|| document.text().to_owned(), |text| text.alone),
+            text_alone: body_text.map_or_else(|| document.text().to_owned(), |text| text.alone),
         })
     }
 
@@ -161,7 +162,7 @@ impl Shared {
         self.place_from(None, key)
     }
 
-    /// The same with a key path in the scene of a body alone.
+    /// The same with a key path in a body.
     fn place_from(&self, body: Option<&str>, key: &str) -> Place {
         match (Document::parse(&self.text, &self.path), body) {
             (Ok(document), Some(name)) => document.of_body(name).place(key),

@@ -14,14 +14,14 @@
 //!    = rename it to `step` (possible here: `end`, `step`, `tolerance`, `formulation`, `scheme`)
 //! ```
 //!
-//! A rule that needs the mesh is checked later and refused the same way by [`Scene::refuse`].
+//! A rule that needs the mesh is checked later and refused the same way by [`Body::refuse`].
 //!
 //! The crate knows no mesh: the crate `model` makes a body of a scene.
 //!
 //! One file of this crate per idea:
 //! `document` is the TOML tree in which every value knows its key path and its place;
 //! `text` lets serde fill structs from that tree, sets values in the text of a scene from outside of it, and shows places;
-//! `section`, `scene`, `body`, `loads` and `tie` are those structs, and so the list of all keys;
+//! `section`, `scene`, `shared`, `body`, `loads` and `tie` are those structs, and so the list of all keys;
 //! `check` has the rules on their values.
 //! A new kind of load is a new variant in `loads`, of constraint in `section` and `body`; its rules are in `check`.
 //! The kinds of histories, the effects and the schemes are those of `dynamics`; `check` has the rules on histories.
@@ -40,7 +40,7 @@ mod methods;
 mod scene;
 mod schema;
 mod section;
-mod system;
+mod shared;
 mod text;
 mod tie;
 
@@ -48,6 +48,7 @@ pub use body::constraint::{Constraint, HeldDirections, HingeLine, Region};
 pub use body::effects::{Choice, Effects};
 pub use body::measured::{Measured, MeasuredMode};
 pub use body::modes::{About, Damping, Flexible, Large, Modes, Rayleigh};
+pub use body::{Body, BodySource, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, TiedMass};
 pub use check::units::{BaseUnit, POUND_FORCE, UnitSize};
 pub use document::join as key_path;
 pub use dynamics::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
@@ -58,9 +59,9 @@ pub use loads::history::{DrivenSpeed, Formula, History, Interpolation, TablePoin
 pub use loads::load::{Load, LoadKind, LoadPlace};
 pub use matrix_import::MatrixFiles;
 pub use methods::{METHODS, method_named};
-pub use scene::{Body, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, Scene, Shared, TiedMass, Time, Units};
+pub use scene::Scene;
 pub use schema::json_schema;
-pub use system::System;
+pub use shared::{Shared, Time, Units};
 pub use text::assign::{AssignError, assign};
 pub use text::files::tables_of;
 pub use text::place::Place;

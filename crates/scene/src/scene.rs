@@ -1,82 +1,57 @@
-//! A scene, as plain data.
-//!
-//! All quantities are in one consistent set of units of the user's choice (mm, Mg, s, N, MPa or
-//! m, kg, s, N, Pa, …); nothing is converted. Positions are in the axes of the mesh, which are
-//! the body axes; at t = 0 the body axes are the global ones.
+//! A scene: bodies, and what ties them together.
 
-use std::collections::BTreeMap;
-use std::ops::{Deref, DerefMut};
-use std::path::PathBuf;
+use std::ops::Deref;
+use std::path::Path;
 use std::sync::Arc;
 
-use dynamics::{Method, Rows, StepControl};
-use fem_tet10::{Materials, PointMass};
-use matrix_import::MatrixFiles;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use dynamics::Method;
 
-use crate::body::constraint::Constraint;
-use crate::body::effects::Effects;
-use crate::body::modes::Modes;
-use crate::loads::load::Load;
-use crate::tie::marker::Marker;
+use crate::alone::BodyTexts;
+use crate::body::Body;
+use crate::check::Check;
+use crate::check::tie::Ties;
+use crate::document::{BODIES, Document, Node, OF_A_BODY, OUTPUT_OF_A_BODY};
+use crate::error::SceneError;
+use crate::file::{refuse_long, refuse_several, text_of};
+use crate::shared::Shared;
+use crate::text::deserialize::from_document;
+use crate::text::name::{GROUND, ONLY_BODY, check_key};
+use crate::tie::joint::{Bushing, Coupling, End, Joint, Spring};
+use crate::tie::marker::GroundMarker;
 
-/// The part of a scene file that all its bodies share. A [`Scene`] and a [`System`](crate::System) show it as theirs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Shared {
-    /// Title of the run, for headings.
-    pub title: String,
-    /// Labels of the units, for axes and tables.
-    pub units: Units,
-    /// How far and how to step.
-    pub time: Time,
-    /// When a state is written, besides the first and the last: key `every`, after that number of steps, or `interval`, at the
-    /// multiples of this time. By default after each step, or after as many as give 5000 rows; with a tolerance, at each 500th
-    /// of the end.
-    pub rows: Rows,
-    /// The scene file, as it was named to [`Scene::read`] or [`Scene::parse`].
-    pub path: PathBuf,
-    /// The text of the scene file.
-    pub text: Arc<str>,
-    /// Number of bodies in the file, of which some may have been left out.
-    pub bodies_of_file: usize,
-}
+/// Bodies of a scene at the most.
+const MAX_BODIES: usize = 1000;
 
-/// The scene of a body, which obeys every rule that needs no mesh: all numbers are finite and in range.
+/// Keys at the root of a scene of several bodies.
+const SHARED: [&str; 11] =
+    ["title", "units", "relaxed", BODIES, GROUND, "joints", "springs", "bushings", "couplings", "time", "output"];
+
+/// A scene of one body or several, which obeys every rule that needs no mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Name of its body among `bodies`; `None` of a scene with `body`.
-    pub name: Option<String>,
-    /// The part that it shares with the other bodies of its file.
+    /// The part that all bodies share.
     pub shared: Arc<Shared>,
-    /// The body.
-    pub body: Body,
-    /// The modes kept and their damping.
-    pub modes: Modes,
-    /// Which effects are simulated.
-    pub effects: Effects,
-    /// The reference points of the floating frame; `None` leaves the choice to the program.
-    pub frame: Option<Frame>,
-    /// The state at t = 0.
-    pub initial: Initial,
-    /// The constraint of the body; `None` is a free one.
-    pub constraint: Option<Constraint>,
-    /// Places with axes, in the order of the file: the ends of joints. Those that its constraints hold come last.
-    pub markers: Vec<Marker>,
-    /// True if joints, springs or bushings of the scene file hold the body: then it does not move alone.
-    pub tied: bool,
-    /// Any number of loads, in the order of the file.
-    pub loads: Vec<Load>,
-    /// The choice of outputs.
-    pub output: Output,
-    /// The text of a scene of this body alone, for its body file.
-    pub source: String,
+    /// The bodies, in the order of the file. A single `[body]` has no name.
+    pub bodies: Vec<Body>,
+    /// Places on the ground, in the order of the file.
+    pub ground: Vec<GroundMarker>,
+    /// Joints between the bodies, in the order of the file.
+    pub joints: Vec<Joint>,
+    /// Springs between markers, in the order of the file.
+    pub springs: Vec<Spring>,
+    /// Bushings between markers, in the order of the file.
+    pub bushings: Vec<Bushing>,
+    /// Joints whose coordinates go together, in the order of the file.
+    pub couplings: Vec<Coupling>,
+    /// True if tied bodies begin deformed as the forces of their motion and their joints ask, so that nothing rings.
+    pub relaxed: bool,
 }
 
-impl Scene {
-    /// The constraint that its modes respect: beside joints, springs or bushings it is a joint to the ground, and the body has free modes.
-    pub fn reduced_constraint(&self) -> Option<&Constraint> {
-        self.constraint.as_ref().filter(|_| !self.tied)
+/// A body alone.
+impl From<Body> for Scene {
+    fn from(body: Body) -> Self {
+        let Ties { ground, joints, springs, bushings, couplings, relaxed } = Ties::default();
+        Self { shared: body.shared.clone(), bodies: vec![body], ground, joints, springs, bushings, couplings, relaxed }
     }
 }
 
@@ -88,197 +63,158 @@ impl Deref for Scene {
     }
 }
 
-/// A change of what is shared is one of this scene alone.
-impl DerefMut for Scene {
-    fn deref_mut(&mut self) -> &mut Shared {
-        Arc::make_mut(&mut self.shared)
-    }
-}
-
-/// Labels of the units. The program never converts: they are shown, not used.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Units {
-    /// Label of the unit of length, e.g. `mm`.
-    pub length: String,
-    /// Label of the unit of mass, e.g. `Mg`.
-    pub mass: String,
-    /// Label of the unit of time, e.g. `s`.
-    pub time: String,
-}
-
-/// The body: the scene has exactly one of the keys.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Body {
-    /// Key `mesh`: a body that can deform.
-    Meshed(MeshedBody),
-    /// Key `file`: such a body from its body file.
-    File(FileBody),
-    /// Key `matrices`: mass and stiffness of a body that can deform, from another program. The files are already resolved
-    /// against the folder of the scene file.
-    Matrices(MatrixFiles),
-    /// Key `rigid`: mass properties without a mesh.
-    Rigid(RigidBody),
-}
-
-impl Body {
-    /// True if its elements are known, and with them stress and its consequences.
-    pub fn has_elements(&self) -> bool {
-        matches!(self, Self::Meshed(_) | Self::File(_))
+impl Scene {
+    /// Reads and checks a scene file.
+    ///
+    /// # Errors
+    /// As [`Body::read`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        Self::parse(&text_of(path)?, path)
     }
 
-    /// True if its elements are all there is of it: then its motion may bend far.
-    pub fn bends_far(&self) -> bool {
-        self.not_by_elements().is_none()
+    /// Checks the text of a scene file, as [`Body::parse`].
+    ///
+    /// # Errors
+    /// As [`Body::parse`]; also for a table that belongs to a body and is not in one, and for names that cannot be parts of a
+    /// path.
+    pub fn parse(text: &str, path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        refuse_long(text.len(), path)?;
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut document = Document::parse(text, path)?;
+        let ties = document.take_ties();
+        let (shared, bodies) = bodies(&document, text, ties.as_ref())?;
+        let Ties { ground, joints, springs, bushings, couplings, relaxed } = match &ties {
+            Some(ties) => Check::new(ties, shared.time.end).ties(from_document(ties)?, &bodies)?,
+            None => Ties::default(),
+        };
+        Ok(Self { shared, bodies, ground, joints, springs, bushings, couplings, relaxed })
     }
 
-    /// The body in words where it is not made of elements alone, so that its motion cannot bend far.
-    pub fn not_by_elements(&self) -> Option<&'static str> {
-        match self {
-            Self::Meshed(body) if !body.tied_masses.is_empty() => Some("a body with masses beside it (`tied_masses`)"),
-            Self::Meshed(_) | Self::File(_) => None,
-            Self::Matrices(_) => Some("a body of matrices, whose elements are not known"),
-            Self::Rigid(_) => Some("a rigid body"),
+    /// The only body.
+    ///
+    /// # Errors
+    /// The refusal of several.
+    pub fn only_body(&self) -> Result<&Body, SceneError> {
+        match &self.bodies[..] {
+            [body] => Ok(body),
+            several => {
+                let names: Vec<&str> = several.iter().filter_map(|body| body.name.as_deref()).collect();
+                Err(refuse_several(self.place(BODIES), &names))
+            }
         }
     }
-}
 
-/// A body of finite elements.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MeshedBody {
-    /// The mesh file, already resolved against the folder of the scene file.
-    pub mesh: PathBuf,
-    /// Key `mesh_size`: the largest size of an element where geometry is meshed, length; `None` leaves it to the mesher.
-    pub mesh_size: Option<f64>,
-    /// Key `raise_order`: true if straight edges of first-order elements get a node in their middle.
-    pub raise_order: bool,
-    /// Materials of the elements: key `material` for the whole mesh, or `materials` by the name of the physical group.
-    pub materials: Materials,
-    /// Masses added at points; default none.
-    pub point_masses: Vec<PointMass>,
-    /// Masses beside the body that move with some of its nodes; default none.
-    pub tied_masses: Vec<TiedMass>,
-}
-
-impl MeshedBody {
-    /// The way out where masses beside a body cannot be.
-    pub const WITHOUT_TIED_MASSES: &str =
-        "mesh the masses as parts of the body, or hold rigid bodies of their mass by fixed joints";
-}
-
-/// A mass at a point on the body or beside it, which moves with the rigid motion that fits the displacements of some nodes best, Eq. (M19) of
-/// `docs/method/modes.md`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct TiedMass {
-    /// The point, in the frame of the mesh.
-    pub at: [f64; 3],
-    /// The mass.
-    pub mass: f64,
-    /// The nodes: a group of the mesh with three or more that are not on a line, at most 500.
-    pub group: String,
-}
-
-/// A body from a body file. The file says what it was made of, and what the scene says besides must be the same.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FileBody {
-    /// The body file, already resolved against the folder of the scene file.
-    pub file: PathBuf,
-    /// The mesh file, already resolved.
-    pub mesh: Option<PathBuf>,
-    /// As [`MeshedBody::mesh_size`].
-    pub mesh_size: Option<f64>,
-    /// As [`MeshedBody::raise_order`].
-    pub raise_order: bool,
-    /// As [`MeshedBody::materials`].
-    pub materials: Option<Materials>,
-    /// As [`MeshedBody::point_masses`].
-    pub point_masses: Option<Vec<PointMass>>,
-}
-
-/// A rigid body without a mesh. Its axes are those of the scene's positions ("mesh axes" elsewhere).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RigidBody {
-    /// Mass > 0.
-    pub mass: f64,
-    /// Centre of mass, length, body axes.
-    pub center_of_mass: [f64; 3],
-    /// Inertia tensor about the centre of mass, mass · length², body axes: symmetric, its principal moments positive
-    /// and none above the sum of the others, or zeros for a point mass. The file may give it about another point.
-    pub inertia: [[f64; 3]; 3],
-}
-
-impl RigidBody {
-    /// True if it is a point mass, without moments of inertia.
-    pub fn is_point(&self) -> bool {
-        self.inertia == [[0.0; 3]; 3]
+    /// The same with other things that all bodies share.
+    #[must_use]
+    pub fn with_shared(mut self, change: impl FnOnce(Shared) -> Shared) -> Self {
+        self.shared = Arc::new(change(Shared::clone(&self.shared)));
+        self.bodies.iter_mut().for_each(|body| body.shared = self.shared.clone());
+        self
     }
-}
 
-/// The paper's reference points: three points of the body that are not on one line.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Frame {
-    /// Point R, length, mesh axes.
-    #[serde(rename = "R")]
-    pub r: [f64; 3],
-    /// Point P, length, mesh axes.
-    #[serde(rename = "P")]
-    pub p: [f64; 3],
-    /// Point Q, length, mesh axes.
-    #[serde(rename = "Q")]
-    pub q: [f64; 3],
-}
-
-/// The state at t = 0. Every key is optional; default 0.
-#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Initial {
-    /// Attitude as a quaternion [w, x, y, z] that takes body components to global ones; its length is made one. Without
-    /// it the body axes are along the global ones.
-    pub attitude: Option<[f64; 4]>,
-    /// Place of the origin of the mesh axes, length, global. Without it the body is where its mesh is, turned about its centre
-    /// of mass or the point that is held.
-    pub position: Option<[f64; 3]>,
-    /// Velocity of the centre of mass, length per time, global.
-    pub velocity: [f64; 3],
-    /// Angular velocity, radians per time, body axes.
-    pub angular_velocity: [f64; 3],
-    /// Modal displacements of the flexible modes (mass-normalised), lowest mode first. At most
-    /// [`Flexible::most`](crate::Flexible::most) entries; those not given are 0.
-    pub modal_displacement: Vec<f64>,
-    /// Modal velocities, as [`Initial::modal_displacement`].
-    pub modal_velocity: Vec<f64>,
-}
-
-/// How far and how to step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Time {
-    /// Time > 0 at the end of the run, which starts at 0.
-    pub end: f64,
-    /// Control of the length of a step: key `step`, 1e-12 end ≤ step ≤ end, or `tolerance`, above 0 and below 1.
-    pub control: StepControl,
-    /// The equations of motion and the way from one step to the next: keys `formulation` and `scheme`. Where bodies are in joints, springs
-    /// or bushings it is one of [`Method::OF_JOINTS`]; [`Scene::method`] is the one of a body.
-    pub method: Method,
-}
-
-/// The choice of outputs of a body.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Output {
-    /// Points whose motion is written: name, and position (length, mesh axes); default none.
-    /// A name is not empty, `.` or `..` and has no `/` and no control character, since it names
-    /// a group of the results file.
-    pub points: BTreeMap<String, [f64; 3]>,
-    /// True if the stress at the points is written, too; default no.
-    pub stress: bool,
-    /// True if the largest von Mises stress of the whole body among the rows is looked for; default no.
-    pub peak_stress: bool,
-}
-
-impl Scene {
-    /// The method by which the body moves: of joints only where joints, springs or bushings hold it.
+    /// The method by which bodies in joints, springs or bushings move, or without any the method of all.
     pub fn method(&self) -> &Method {
-        if self.tied { &self.time.method } else { self.time.method.without_joints() }
+        if self.has_ties() { &self.time.method } else { self.time.method.without_joints() }
     }
+
+    /// True if joints, springs or bushings tie bodies together or to the ground.
+    pub fn has_ties(&self) -> bool {
+        self.bodies.iter().any(|body| body.tied)
+    }
+
+    /// True if joints, springs or bushings connect something.
+    pub fn has_connections(&self) -> bool {
+        !(self.joints.is_empty() && self.springs.is_empty() && self.bushings.is_empty())
+    }
+
+    /// The name of an end as `between` has it, such as `arm.root`, `ground.wall` or `ground`.
+    pub fn name_of(&self, end: End) -> String {
+        let name = match end {
+            End::Body { body, marker } => self.bodies.get(body).and_then(|body| {
+                let marker = body.markers.get(marker)?;
+                Some(format!("{}.{}", body.name.as_deref().unwrap_or(ONLY_BODY), marker.name))
+            }),
+            End::Ground { marker } => {
+                marker.and_then(|marker| self.ground.get(marker)).map(|marker| format!("{GROUND}.{}", marker.name))
+            }
+        };
+        name.unwrap_or_else(|| GROUND.to_owned())
+    }
+
+    /// All ends that `between` can name.
+    pub fn ends(&self) -> Vec<End> {
+        let of_bodies = self.bodies.iter().enumerate();
+        let of_bodies =
+            of_bodies.flat_map(|(i, body)| (0..body.markers.len()).map(move |marker| End::Body { body: i, marker }));
+        let of_ground = (0..self.ground.len()).map(Some).chain([None]);
+        of_bodies.chain(of_ground.map(|marker| End::Ground { marker })).collect()
+    }
+}
+
+/// The bodies of a document, without its `ties`, and what they share.
+fn bodies(
+    document: &Document<'_>,
+    text: &str,
+    ties: Option<&Document<'_>>,
+) -> Result<(Arc<Shared>, Vec<Body>), SceneError> {
+    let Some(bodies) = document.bodies() else {
+        let body = Body::of_document(document, None, ties, None)?;
+        return Ok((body.shared.clone(), vec![body]));
+    };
+    document.root().children().try_for_each(|child| check_shared(&child))?;
+    if bodies.len() > MAX_BODIES {
+        let found = format!("{} bodies", bodies.len());
+        let help = "make several scenes of them";
+        return Err(document.place(BODIES).refuse(found, format!("at most {MAX_BODIES}"), help));
+    }
+    let texts = BodyTexts::new(text);
+    let (mut shared, mut read) = (None, Vec::with_capacity(bodies.len()));
+    for node in &bodies {
+        check_key(
+            node,
+            "rename the body, e.g. `hub`: it names a group in the results file, and `hub.tip` a point of it",
+        )?;
+        if ties.is_some() && node.name() == GROUND {
+            let help = "rename the body: in `between`, this is the name of the ground";
+            return Err(node.place_of_key().refuse("the name \"ground\"", "another one", help));
+        }
+        let body = Body::of_document(&document.of_body(node.name()), Some(texts.of(node.name())), ties, shared)?;
+        shared = Some(body.shared.clone());
+        read.push(body);
+    }
+    let help = "give each body a table, e.g. `[bodies.left]` with `mesh` and `material`";
+    let none = || document.place(BODIES).refuse("no body", "one table for each body", help);
+    Ok((shared.ok_or_else(none)?, read))
+}
+
+/// Refuses what belongs to a body beside the bodies.
+fn check_shared(child: &Node<'_>) -> Result<(), SceneError> {
+    let name = child.name();
+    if name == "body" || OF_A_BODY.contains(&name) {
+        let help = match name {
+            "body" => "give the body a name among the others, e.g. `[bodies.hub]`".to_owned(),
+            _ => format!("write it into the table of a body, e.g. `[bodies.hub.{name}]`"),
+        };
+        return Err(child.place_of_key().refuse(
+            format!("both `{name}` and `{BODIES}`"),
+            "what belongs to a body in its table",
+            help,
+        ));
+    }
+    let of_a_body = |output: &Node<'_>| OUTPUT_OF_A_BODY.contains(&output.name());
+    if name == "output"
+        && let Some(output) = child.children().find(of_a_body)
+    {
+        return Err(output.place_of_key().refuse(
+            format!("`{}` for all bodies together", output.name()),
+            "it in the table of a body",
+            format!("write it there, e.g. `[bodies.hub]` with `{} = …`", output.name()),
+        ));
+    }
+    if SHARED.contains(&name) {
+        return Ok(());
+    }
+    Err(SceneError::UnknownKey { at: child.place_of_key().into(), key: name.to_owned(), known: SHARED.to_vec() })
 }

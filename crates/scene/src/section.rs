@@ -12,10 +12,11 @@ use serde::{Deserialize, Deserializer};
 
 use crate::body::effects::{Choice, Effects, auto};
 use crate::body::modes::Rayleigh;
+use crate::body::{Frame, Initial, TiedMass};
 use crate::loads::history::DrivenSpeed;
 use crate::loads::load::{Load, LoadSection};
 use crate::methods::{formulation_names, scheme_names};
-use crate::scene::{Frame, Initial, TiedMass, Units};
+use crate::shared::Units;
 use crate::tie::section::{InOrder, MarkerSection};
 
 /// The whole file.

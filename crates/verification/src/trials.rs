@@ -6,7 +6,7 @@ use std::path::Path;
 
 use flexframe::fit::{Fit, FitSettings};
 use model::Builder;
-use scene::{Measured, MeasuredMode, Scene};
+use scene::{Body, Measured, MeasuredMode};
 
 use crate::lot::Lot;
 
@@ -132,7 +132,7 @@ fn table(modes: usize) -> Measured {
 }
 
 /// The scene of a case with its parameters, as multiples of the true ones.
-fn scene(case: &Case, times: f64) -> Result<Scene, Box<dyn Error>> {
+fn scene(case: &Case, times: f64) -> Result<Body, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let value = |name: &str, default: f64| {
         let parameter = case.parameters.iter().find(|(other, _)| *other == name);
@@ -149,5 +149,5 @@ fn scene(case: &Case, times: f64) -> Result<Scene, Box<dyn Error>> {
         value("body.point_masses[0].mass", 1e-5),
         case.modes,
     );
-    Ok(Scene::parse(&text, root.join("trials.toml"))?)
+    Ok(Body::parse(&text, root.join("trials.toml"))?)
 }

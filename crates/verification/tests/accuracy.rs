@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 use verification::accuracy::accuracy_page;
 
 /// The ring, spinning and ringing, for a twentieth of a second.
@@ -13,12 +13,11 @@ const SCENE: &str = include_str!("../../../tests/program/commands/short_ring.tom
 fn the_page_has_its_tables_and_its_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../meshes/ring.msh");
-    let scene =
-        Scene::parse(&SCENE.replace("MESH", mesh.to_str().unwrap()).replace("TIME", "step = 1e-4"), "ring.toml")
-            .unwrap();
+    let body = Body::parse(&SCENE.replace("MESH", mesh.to_str().unwrap()).replace("TIME", "step = 1e-4"), "ring.toml")
+        .unwrap();
     let (docs, lists) = (folder.path().join("docs"), folder.path().join("lists"));
     std::fs::create_dir(&docs).unwrap();
-    accuracy_page(&[scene], &docs.join("accuracy.md"), &lists, Duration::from_millis(100), false).unwrap();
+    accuracy_page(&[body], &docs.join("accuracy.md"), &lists, Duration::from_millis(100), false).unwrap();
     let page = std::fs::read_to_string(docs.join("accuracy.md")).unwrap();
     for words in ["# The price of accuracy", "## Ring", "**The paper's scheme.**", "The price of modes"] {
         assert!(page.contains(words), "{words} in {page}");

@@ -2,15 +2,15 @@
 
 use flexframe::advise::{AdviseReport, ModeRow, Real, advise};
 use flexframe::model::Builder;
-use flexframe::scene::{Choice, Effect, Scene};
+use flexframe::scene::{Body, Choice, Effect};
 
-fn example(name: &str) -> Scene {
-    Scene::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+fn example(name: &str) -> Body {
+    Body::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
 /// Advice on a scene, verified; nothing that is called negligible may turn out not to be.
-fn verified(scene: &Scene) -> AdviseReport {
-    let report = advise(scene, &Builder::default(), true, |_| ()).unwrap();
+fn verified(body: &Body) -> AdviseReport {
+    let report = advise(body, &Builder::default(), true, |_| ()).unwrap();
     for row in &report.rows {
         let name = format!("{}: {}", report.title, row.subject.name());
         match &row.real {
@@ -46,9 +46,9 @@ fn of_a_free_body_that_spins_and_is_struck() {
 /// Independent reference: the motion itself, run with and without each effect, against the estimates.
 #[test]
 fn of_a_driven_body() {
-    let mut scene = example("wu_haug");
-    scene.time.end = 4.0;
-    let report = verified(&scene);
+    let mut body = example("wu_haug");
+    body.time.end = 4.0;
+    let report = verified(&body);
     let rows = |effect: &str| report.rows.iter().find(|row| row.subject.name() == effect).unwrap();
     // Large modes have the stiffness of the spin in them.
     assert!(real(&report, "large_deflection") > 1e-3 && rows("large_deflection").on == Some(true));
@@ -59,21 +59,21 @@ fn of_a_driven_body() {
 /// Independent reference: the motion itself, run with and without each effect, against the estimates.
 #[test]
 fn of_a_held_body_under_gravity() {
-    let mut scene = example("bar/pendulum");
-    scene.time.end = 0.2;
-    scene.effects.choices[Effect::Flexibility] = Choice::Auto;
-    assert!(real(&verified(&scene), "gravity") >= 1.0);
+    let mut body = example("bar/pendulum");
+    body.time.end = 0.2;
+    body.effects.choices[Effect::Flexibility] = Choice::Auto;
+    assert!(real(&verified(&body), "gravity") >= 1.0);
 }
 
 /// Closed form: (Ω/ω₁)² is 0.42 % for the first frequency of 24.5 Hz. The plate's heavy tips put it under tension:
 /// the bounds of 3 to 4 % are about what was measured.
 #[test]
 fn the_plate_at_10_rad_s_is_stiffened_by_three_per_cent() {
-    let mut scene = example("accuracy/tumbling");
-    scene.initial.angular_velocity = [0.0, 10.0, 0.0];
-    scene.initial.modal_velocity = vec![1.0];
-    scene.effects.choices[Effect::GeometricStiffening] = Choice::Auto;
-    let report = advise(&scene, &Builder::default(), false, |_| ()).unwrap();
+    let mut body = example("accuracy/tumbling");
+    body.initial.angular_velocity = [0.0, 10.0, 0.0];
+    body.initial.modal_velocity = vec![1.0];
+    body.effects.choices[Effect::GeometricStiffening] = Choice::Auto;
+    let report = advise(&body, &Builder::default(), false, |_| ()).unwrap();
     let row = report.rows.iter().find(|row| row.subject.name() == "geometric_stiffening").unwrap();
     let ratio = (10.0 / (std::f64::consts::TAU * report.modes[0].frequency)).powi(2);
     let shift = (1.0 + row.value).sqrt() - 1.0;
@@ -109,12 +109,12 @@ fn the_table_of_modes_shows_as_many_to_keep_as_the_sentence_says() {
 /// of the first frequency.
 #[test]
 fn what_linear_strain_gets_wrong_has_a_row_for_each_mode_and_is_what_a_run_without_shows() {
-    let mut scene = example("spinning_plate");
+    let mut body = example("spinning_plate");
     // 20 mm without spin, for two periods.
-    scene.initial.angular_velocity = [0.0; 3];
-    scene.effects.choices[Effect::GeometricStiffening] = Choice::Auto;
-    scene.time.end = 0.08;
-    let report = verified(&scene);
+    body.initial.angular_velocity = [0.0; 3];
+    body.effects.choices[Effect::GeometricStiffening] = Choice::Auto;
+    body.time.end = 0.08;
+    let report = verified(&body);
     let row = report.rows.iter().find(|row| row.subject.name() == "large_deflection").unwrap();
     // 0.87 % of 24.53 Hz for 0.08 s, and what was seen of it.
     let strain = report.modes[0].linear_strain.unwrap();

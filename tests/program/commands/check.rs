@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use flexframe::check::{CheckRows, check};
 use flexframe::model::Builder;
 use flexframe::run::{RunSettings, run};
-use flexframe::scene::{Scene, System};
+use flexframe::scene::{Body, Scene};
 
 use serde_json::Value;
 
@@ -142,9 +142,9 @@ fn a_run_says_after_its_check_that_a_body_buckles() {
 #[test]
 fn a_check_needs_the_mesh_of_the_run() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = Scene::read(scene(folder.path())).unwrap();
-    let system = System::from(scene);
-    let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let body = Body::read(scene(folder.path())).unwrap();
+    let scene = Scene::from(body);
+    let (_, report) = run(&scene, folder.path(), &RunSettings::default(), |_| ()).unwrap();
     let checked = || check(&report.results, &Builder::default(), &CheckRows::Worst, |_| ());
     assert!(checked().is_ok());
     fs::copy(root().join("crates/verification/meshes/rod.msh"), folder.path().join("column.msh")).unwrap();
@@ -161,8 +161,8 @@ fn a_check_needs_the_mesh_of_the_run() {
 #[test]
 fn a_body_in_joints_is_checked_under_their_forces() {
     let folder = tempfile::tempdir().unwrap();
-    let system = System::read(root().join("examples/mechanisms/double_pendulum.toml")).unwrap();
-    let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let scene = Scene::read(root().join("examples/mechanisms/double_pendulum.toml")).unwrap();
+    let (_, report) = run(&scene, folder.path(), &RunSettings::default(), |_| ()).unwrap();
     let found = check(&report.results, &Builder::default(), &CheckRows::Worst, |_| ()).unwrap();
     for body in &found.bodies {
         let first = &body.rows[0];
@@ -195,8 +195,8 @@ spring = { stiffness = 3.0, damping = 0.005 }\nmotor = { amplitude = 2.0, histor
 #[test]
 fn a_body_in_springs_motors_and_patches_is_checked_under_their_forces() {
     let folder = tempfile::tempdir().unwrap();
-    let system = System::parse(TIED, root().join("tied.toml")).unwrap();
-    let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let scene = Scene::parse(TIED, root().join("tied.toml")).unwrap();
+    let (_, report) = run(&scene, folder.path(), &RunSettings::default(), |_| ()).unwrap();
     let found = check(&report.results, &Builder::default(), &CheckRows::Worst, |_| ()).unwrap();
     for body in &found.bodies {
         assert_eq!(body.not_checked, None);

@@ -8,7 +8,7 @@ use std::time::Duration;
 use dynamics::{Method, Observation, Rows, StepControl};
 use flexframe::cost::{CostReport, CostSettings, LadderRun, Line, MeasuredRun, Outcome, Setting, price_list};
 use model::{Builder, Model};
-use scene::{METHODS, Scene, System};
+use scene::{Body, METHODS, Scene};
 
 use crate::program::command_in;
 
@@ -22,8 +22,8 @@ fn scene_text(time: &str) -> String {
     SCENE.replace("MESH", mesh.to_str().unwrap()).replace("TIME", time)
 }
 
-fn scene(time: &str) -> Scene {
-    Scene::parse(&scene_text(time), "ring.toml").unwrap()
+fn scene(time: &str) -> Body {
+    Body::parse(&scene_text(time), "ring.toml").unwrap()
 }
 
 /// Bounded by steps, not by time, so that the rows are the same on any machine, however busy.
@@ -342,11 +342,11 @@ step = 0.01
 #[test]
 fn of_several_bodies_an_error_is_that_of_the_worst_and_work_is_that_of_all() {
     let folder = tempfile::tempdir().unwrap();
-    let priced = |system: &System, name: &str| {
+    let priced = |system: &Scene, name: &str| {
         let settings = CostSettings { target: None, ..settings(2000, 0.0) };
         price_list(system, &Builder::default(), &folder.path().join(name), settings, |_| ()).unwrap()
     };
-    let system = System::parse(SEVERAL, "tops.toml").unwrap();
+    let system = Scene::parse(SEVERAL, "tops.toml").unwrap();
     let both = priced(&system, "both");
     assert_eq!(both.bodies.iter().map(|body| body.name.as_str()).collect::<Vec<_>>(), ["slow", "fast"]);
     assert_eq!((both.bodies[0].points, both.bodies[1].points), (0, 1));
@@ -422,9 +422,9 @@ tolerance = 1e-5
 #[test]
 fn tied_bodies_have_a_price_list_of_their_schemes() {
     let folder = tempfile::tempdir().unwrap();
-    let system = System::parse(TIED, "pendulum.toml").unwrap();
+    let scene = Scene::parse(TIED, "pendulum.toml").unwrap();
     let settings = settings(20_000, 1e-4);
-    let report = price_list(&system, &Builder::default(), folder.path(), settings, |_| ()).unwrap();
+    let report = price_list(&scene, &Builder::default(), folder.path(), settings, |_| ()).unwrap();
     let lines: Vec<_> = report.lines.iter().map(|line| (line.scheme, line.controlled, line.order)).collect();
     assert_eq!(
         lines,
@@ -454,7 +454,7 @@ fn tied_bodies_have_a_price_list_of_their_schemes() {
         "{:?}",
         answer.lines
     );
-    let alone = flexframe::scene::Scene::parse_body(TIED, "pendulum.toml", Some("upper")).unwrap();
+    let alone = flexframe::scene::Body::parse_body(TIED, "pendulum.toml", Some("upper")).unwrap();
     let refused = price_list(&alone.into(), &Builder::default(), folder.path(), settings, |_| ()).unwrap_err();
     assert!(refused.to_string().contains("joints"), "{refused}");
 }

@@ -8,7 +8,7 @@ use flexframe::fem_tet10::{self, Materials, StressRecovery};
 use flexframe::model::Model;
 use flexframe::rigid_kin::Attitude;
 use flexframe::row::{BodyRow, Row};
-use flexframe::scene::{Body, Scene};
+use flexframe::scene::{Body, BodySource};
 use nalgebra::Vector3;
 use results::{Results, unfinished};
 
@@ -65,10 +65,10 @@ fn run(folder: &Path, text: &str) -> PathBuf {
     folder.join("scene.h5")
 }
 
-fn materials(scene: &Scene) -> Materials {
-    match &scene.body {
-        Body::Meshed(body) => body.materials.clone(),
-        Body::File(_) | Body::Rigid(_) | Body::Matrices(_) => unreachable!("the body has a mesh"),
+fn materials(body: &Body) -> Materials {
+    match &body.source {
+        BodySource::Meshed(meshed) => meshed.materials.clone(),
+        BodySource::File(_) | BodySource::Rigid(_) | BodySource::Matrices(_) => unreachable!("the body has a mesh"),
     }
 }
 
@@ -136,8 +136,8 @@ fn a_results_file_becomes_a_table_and_fields() {
     let times = results.numbers("time").unwrap();
     assert_eq!(read(&group, "Steps/Values"), (0..6).map(|step| times[4 * step]).collect::<Vec<_>>());
     // By the points of the results: another way from modes to displacements.
-    let scene = Scene::parse(&results.metadata.scene_text, &results.metadata.scene_file).unwrap();
-    let model = Model::build(&scene, |_| ()).unwrap();
+    let body = Body::parse(&results.metadata.scene_text, &results.metadata.scene_file).unwrap();
+    let model = Model::build(&body, |_| ()).unwrap();
     let node = (0..n).find(|i| (points[3 * i] - 8.0).abs() < 1e-9).unwrap();
     let place = Vector3::from_column_slice(&points[3 * node..3 * node + 3]);
     let mesh = &model.meshed.as_ref().unwrap();
@@ -145,7 +145,7 @@ fn a_results_file_becomes_a_table_and_fields() {
     let [displacement, elastic, von_mises] = ["displacement", "elastic_displacement", "von_mises_stress"]
         .map(|name| read(&group, &format!("PointData/{name}")));
     // The stress of the displaced mesh, not that of the modes.
-    let recovery = StressRecovery::new(&mesh.mesh, &materials(&scene)).unwrap();
+    let recovery = StressRecovery::new(&mesh.mesh, &materials(&body)).unwrap();
     let mut largest: f64 = 0.0;
     for step in 0..6 {
         let coordinates = model.coordinates(results.table("modal/displacement").unwrap().row(4 * step).unwrap());
@@ -268,14 +268,14 @@ fn what_cannot_be_exported_is_refused_and_an_unfinished_run_is_marked() {
     assert!(!Path::new(&at("out")).exists() && !Path::new(&at("out.csv")).exists());
 
     // A run that was cut off after three rows.
-    let scene = Scene::read(at("scene.toml")).unwrap();
+    let given = Body::read(at("scene.toml")).unwrap();
     let results = Results::open(file, &COLUMNS).unwrap();
     let part = unfinished(at("cut.h5"));
-    let model = Model::build(&scene, |_| ()).unwrap();
+    let model = Model::build(&given, |_| ()).unwrap();
     let mut writer =
         results::Writer::create(at("cut.h5"), &results.metadata, &[None], &COLUMNS, results::Expected::default())
             .unwrap();
-    for now in model.start(&scene).unwrap().take(3) {
+    for now in model.start(&given).unwrap().take(3) {
         let motion = now.unwrap();
         let time = motion.time;
         let body = BodyRow { motion, ..BodyRow::new(&model) };

@@ -9,7 +9,7 @@ use flexframe::columns::COLUMNS;
 use flexframe::fem_tet10::von_mises;
 use flexframe::html_report;
 use flexframe::model::{Builder, Needs};
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 use live::{BODY_NUMBERS, LiveRun, Player};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use page_data::bytes;
@@ -90,7 +90,7 @@ fn follows_the_point(scene: &str, point: &str, place: [f64; 3]) {
     let products: Vec<[usize; 2]> =
         fields["products"].as_array().unwrap().iter().map(|pair| [index(&pair[0]), index(&pair[1])]).collect();
     assert_eq!(stresses.len(), shapes.len() + products.len());
-    let scene = Scene::parse(&results.metadata.scene_text, &results.metadata.scene_file).unwrap();
+    let scene = Body::parse(&results.metadata.scene_text, &results.metadata.scene_file).unwrap();
     let builder = Builder::default().needing(Needs { stress_field: true, ..Needs::default() });
     let model = builder.build(&scene, |_| ()).unwrap();
     let stress = model.stress.as_ref().unwrap();

@@ -5,7 +5,7 @@ use std::path::Path;
 use diagnostic::Kind;
 use flexframe::new_scene::{ImportSettings, new_scene};
 use flexframe::run::{self, RunSettings};
-use flexframe::scene::{Body, Scene};
+use flexframe::scene::{Body, BodySource};
 
 const AS_IT_IS: ImportSettings =
     ImportSettings { mesh_size: None, raise_order: false, trust_geometry: false, hides_lines: false };
@@ -29,10 +29,10 @@ fn it_names_groups_and_mass_and_runs() {
     for words in ["millimetres", "200.0 x 10.0 x 10.0 mm", "is 0.000157 Mg"] {
         assert!(text.contains(words), "{words}: {text}");
     }
-    let scene = Scene::read(&path).unwrap();
-    let Body::Meshed(body) = &scene.body else { panic!("it has a mesh") };
-    assert_eq!(body.mesh, mesh);
-    let (models, report) = run::run(&scene.into(), folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let body = Body::read(&path).unwrap();
+    let BodySource::Meshed(meshed) = &body.source else { panic!("it has a mesh") };
+    assert_eq!(meshed.mesh, mesh);
+    let (models, report) = run::run(&body.into(), folder.path(), &RunSettings::default(), |_| ()).unwrap();
     let mass = models[0].body.mass;
     assert!((mass / 1.57e-4 - 1.0).abs() < 1e-9, "{mass}");
     let balances = &report.bodies[0].balances;
@@ -51,7 +51,7 @@ fn it_names_groups_and_mass_and_runs() {
         .collect::<Vec<_>>()
         .join("\n");
     assert!(held.contains("\n[[constraints]]"));
-    Scene::parse(&held, &path).unwrap();
+    Body::parse(&held, &path).unwrap();
 
     assert_eq!(new_scene(&mesh, &AS_IT_IS, None, false).unwrap_err().diagnosis().kind, Kind::Io);
     new_scene(&mesh, &AS_IT_IS, None, true).unwrap();
@@ -61,8 +61,8 @@ fn it_names_groups_and_mass_and_runs() {
     assert_eq!(std::fs::read(&mesh).unwrap(), before);
     let elsewhere = tempfile::tempdir().unwrap();
     let (path, _) = new_scene(&mesh, &AS_IT_IS, Some(&elsewhere.path().join("a.toml")), false).unwrap();
-    let Body::Meshed(body) = Scene::read(path).unwrap().body else { panic!("it has a mesh") };
-    assert_eq!(body.mesh, mesh.canonicalize().unwrap());
+    let BodySource::Meshed(meshed) = Body::read(path).unwrap().source else { panic!("it has a mesh") };
+    assert_eq!(meshed.mesh, mesh.canonicalize().unwrap());
 }
 
 /// Closed form: the mass is the sum of ρV. A bracket of aluminium does not become one of steel.
@@ -82,8 +82,8 @@ fn the_materials_of_a_deck_are_those_of_its_scene_and_another_one_is_told() {
         std::fs::write(&mesh, format!("{deck}{alloy}{sections}")).unwrap();
         let (path, notes) = new_scene(&mesh, &AS_IT_IS, None, true).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
-        let scene = Scene::parse(&text, &path).unwrap();
-        (text, flexframe::model::Model::build(&scene, |_| ()).unwrap(), notes)
+        let body = Body::parse(&text, &path).unwrap();
+        (text, flexframe::model::Model::build(&body, |_| ()).unwrap(), notes)
     };
     let both = "*SOLID SECTION, ELSET=arm, MATERIAL=AW 6082\n*SOLID SECTION, ELSET=head, MATERIAL=AW 6082\n";
     let (text, model, notes) = of(both);
@@ -105,8 +105,8 @@ fn the_materials_of_a_deck_are_those_of_its_scene_and_another_one_is_told() {
 
     // A scene with one of its own keeps it, and says so.
     let own = text.replacen("density = 2.7e-9", "density = 2.8e-9", 1);
-    let scene = Scene::parse(&own, folder.path().join("own.toml")).unwrap();
-    let model = flexframe::model::Model::build(&scene, |_| ()).unwrap();
+    let body = Body::parse(&own, folder.path().join("own.toml")).unwrap();
+    let model = flexframe::model::Model::build(&body, |_| ()).unwrap();
     let notes = &model.meshed.as_ref().unwrap().mesh_notes;
     assert!((model.body.mass / (10.0 * 2.8e-9 + 2.0 * 7.85e-9) - 1.0).abs() < 1e-9);
     assert_eq!(notes.len(), 1, "{notes:?}");

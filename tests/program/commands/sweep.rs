@@ -6,7 +6,7 @@ use std::process::Command;
 
 use flexframe::model::Builder;
 use flexframe::run::{self, RunSettings};
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 use flexframe::sweep::{Shard, SweepReport, SweepSettings, merge, sweep};
 
 use crate::program::command_in;
@@ -88,14 +88,9 @@ fn a_blade_at_twenty_speeds_costs_one_reduction_and_each_row_is_that_of_its_own_
     let tip = case.table("results/tip");
     for row in [0, 7, 19] {
         let text = SCENE.replace("10.0]", &format!("{:?}]", speeds[row]));
-        let scene = Scene::parse(&text, case.path("blade.toml")).unwrap();
-        run::run(
-            &scene.into(),
-            &case.path("alone"),
-            &RunSettings { overwrite: true, ..RunSettings::default() },
-            |_| (),
-        )
-        .unwrap();
+        let body = Body::parse(&text, case.path("blade.toml")).unwrap();
+        run::run(&body.into(), &case.path("alone"), &RunSettings { overwrite: true, ..RunSettings::default() }, |_| ())
+            .unwrap();
         let file = hdf5::File::open(case.path("alone/blade.h5")).unwrap();
         let alone: Vec<f64> = file.dataset("points/displacement").unwrap().read_raw().unwrap();
         assert_eq!(tip[3 * row..3 * row + 3], alone[alone.len() - 3..]);
@@ -280,8 +275,8 @@ fn frequencies_are_swept_without_a_run() {
     let report = case.run(false).unwrap();
     assert_eq!((report.done, report.reductions), (2, 2), "{:?}", report.failures);
     let found = case.table("results/f");
-    let scene = Scene::parse(SCENE, case.path("blade.toml")).unwrap();
-    let (_, modes) = flexframe::modes::modes(&scene, &Builder::default(), None, |_| ()).unwrap();
+    let body = Body::parse(SCENE, case.path("blade.toml")).unwrap();
+    let (_, modes) = flexframe::modes::modes(&body, &Builder::default(), None, |_| ()).unwrap();
     assert_eq!(
         found[..4].to_vec(),
         (0..4).map(|k| modes.number(&format!("body.natural_frequencies[{k}]")).unwrap()).collect::<Vec<_>>()

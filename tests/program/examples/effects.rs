@@ -2,7 +2,7 @@
 
 use flexframe::dynamics::{ConservativeBody, Stats};
 use flexframe::model::Model;
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 
 use crate::examples::{build, scene};
 
@@ -12,8 +12,8 @@ fn matrix_entries(model: &Model) -> usize {
     ConservativeBody::new(&model.body, model.damping_ratios(), loads, &model.physics).unwrap().matrix_entries()
 }
 
-fn stats(model: &Model, scene: &Scene) -> Stats {
-    let mut simulation = model.start(scene).unwrap();
+fn stats(model: &Model, body: &Body) -> Stats {
+    let mut simulation = model.start(body).unwrap();
     simulation.by_ref().for_each(|row| assert!(row.is_ok()));
     simulation.stats()
 }

@@ -12,20 +12,20 @@ mod top;
 
 use flexframe::dynamics::Observation;
 use flexframe::model::Model;
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 
 use crate::program::root;
 
 /// The scene `examples/<name>.toml`.
-fn scene(name: &str) -> Scene {
-    Scene::read(root().join("examples").join(name).with_extension("toml")).unwrap()
+fn scene(name: &str) -> Body {
+    Body::read(root().join("examples").join(name).with_extension("toml")).unwrap()
 }
 
-fn build(scene: &Scene) -> Model {
-    Model::build(scene, |_| ()).unwrap()
+fn build(body: &Body) -> Model {
+    Model::build(body, |_| ()).unwrap()
 }
 
 /// All rows of a scene's run, the first at t = 0.
-fn rows(model: &Model, scene: &Scene) -> Vec<Observation> {
-    model.start(scene).unwrap().map(Result::unwrap).collect()
+fn rows(model: &Model, body: &Body) -> Vec<Observation> {
+    model.start(body).unwrap().map(Result::unwrap).collect()
 }

@@ -2,7 +2,7 @@
 
 use flexframe::dynamics::Observation;
 use flexframe::model::Model;
-use flexframe::scene::{Body, Choice, Effect, Materials, MeshedBody, Scene};
+use flexframe::scene::{Body, BodySource, Choice, Effect, Materials, MeshedBody};
 use nalgebra::Vector3;
 
 use crate::examples::{build, rows, scene};
@@ -46,40 +46,42 @@ fn measured_period(rows: &[Observation], axis: Vector3<f64>, down: Vector3<f64>)
 /// Closed form: the elliptic integral.
 #[test]
 fn the_period_of_a_rigid_pendulum_is_the_elliptic_integral() {
-    let scene = scene("pendulum");
+    let body = scene("pendulum");
     let down = Vector3::new(2.0_f64.cos(), 2.0_f64.sin(), 0.0);
-    let measured = measured_period(&rows(&build(&scene), &scene), Vector3::z(), down);
+    let measured = measured_period(&rows(&build(&body), &body), Vector3::z(), down);
     let expected = elliptic_period(1.0 / (3.0 * 9.81 * 0.5), 2.0);
     // Measured: 7.7e-13.
     assert!((measured / expected - 1.0).abs() < 1e-9, "{measured} {expected}");
 }
 
-fn period_of_bar(scene: &Scene, model: &Model) -> f64 {
-    measured_period(&rows(model, scene), Vector3::y(), Vector3::new(1.0_f64.cos(), 0.0, -1.0_f64.sin()))
+fn period_of_bar(body: &Body, model: &Model) -> f64 {
+    measured_period(&rows(model, body), Vector3::y(), Vector3::new(1.0_f64.cos(), 0.0, -1.0_f64.sin()))
 }
 
 /// Closed form: the elliptic integral; the gap of the bar that bends falls as 1/E.
 #[test]
 fn the_period_of_a_meshed_pendulum_is_the_elliptic_integral() {
-    let mut scene = scene("bar/pendulum");
+    let mut body = scene("bar/pendulum");
     let expected = elliptic_period((400.0 * 400.0 / 3.0 + 10.0 * 10.0 / 12.0) / (9810.0 * 200.0), 1.0);
-    let rigid = build(&scene);
+    let rigid = build(&body);
     assert_eq!(rigid.body.flexible(), 0);
-    let period = period_of_bar(&scene, &rigid);
+    let period = period_of_bar(&body, &rigid);
     // Measured: 7.6e-12.
     assert!((period / expected - 1.0).abs() < 1e-9, "{period} {expected}");
 
     // The bar that deforms bends as it swings, by something of (Ω/ω₁)² = 1.6e-5: the gap falls as 1/E.
-    scene.effects.choices[Effect::Flexibility] = Choice::On;
-    let gap = |scene: &Scene| {
-        let model = build(scene);
+    body.effects.choices[Effect::Flexibility] = Choice::On;
+    let gap = |body: &Body| {
+        let model = build(body);
         assert_eq!(model.body.flexible(), 10);
-        period_of_bar(scene, &model) / expected - 1.0
+        period_of_bar(body, &model) / expected - 1.0
     };
-    let of_steel = gap(&scene);
-    let Body::Meshed(MeshedBody { materials: Materials::Uniform(material), .. }) = &mut scene.body else { panic!() };
+    let of_steel = gap(&body);
+    let BodySource::Meshed(MeshedBody { materials: Materials::Uniform(material), .. }) = &mut body.source else {
+        panic!()
+    };
     material.young_modulus *= 10.0;
-    let of_stiffer = gap(&scene);
+    let of_stiffer = gap(&body);
     // Measured: 1.0947e-6 and 1.0948e-7.
     assert!((1e-7..2e-6).contains(&of_steel) && (of_steel / of_stiffer / 10.0 - 1.0).abs() < 0.02);
 }

@@ -5,20 +5,20 @@ use flexframe::model::Model;
 use flexframe::peak_stress::PeakStress;
 use flexframe::results::Results;
 use flexframe::run::{RunSettings, run};
-use flexframe::scene::{Effect, Scene};
+use flexframe::scene::{Body, Effect};
 
 use crate::examples::{build, scene};
 use crate::program::root;
 
 /// The results file of a scene and the peak of its summary.
-fn outcome(scene: &Scene) -> (Results, Option<PeakStress>) {
+fn outcome(body: &Body) -> (Results, Option<PeakStress>) {
     let folder = tempfile::tempdir().unwrap();
-    let mut report = run(&scene.clone().into(), folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
+    let mut report = run(&body.clone().into(), folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
     (Results::open(report.results, &COLUMNS).unwrap(), report.bodies.remove(0).peak_stress)
 }
 
 /// A scene of the bar of slenderness 70 along x, 202.07 mm long and 10 mm thick, without Poisson's effect.
-fn bar(rest: &str) -> Scene {
+fn bar(rest: &str) -> Body {
     let text = format!(
         r#"
 title = "bar"
@@ -28,7 +28,7 @@ mesh = "../meshes/rotating_bar.msh"
 material = {{ young_modulus = 70000.0, poisson_ratio = 0.0, density = 2.7e-9 }}
 {rest}"#
     );
-    Scene::parse(&text, root().join("examples/bar.toml")).unwrap()
+    Body::parse(&text, root().join("examples/bar.toml")).unwrap()
 }
 
 const SPIN: f64 = 1000.0;
@@ -36,7 +36,7 @@ const LENGTH: f64 = 202.07;
 /// ρω²(L/2)²/2.
 const BAR: f64 = 0.5 * 2.7e-9 * SPIN * SPIN * LENGTH * LENGTH / 4.0;
 
-fn spinning_bar(static_correction: bool) -> Scene {
+fn spinning_bar(static_correction: bool) -> Body {
     bar(&format!(
         r#"
 [modes]
@@ -144,9 +144,9 @@ fn bent(model: &Model, deflection: f64) -> f64 {
 #[test]
 fn what_large_modes_leave_out_of_a_body_that_is_bent_far_is_not_stated() {
     for (deflection, is_stated) in [(0.01, true), (0.05, false)] {
-        let mut scene = bar(BENT);
-        scene.initial.modal_displacement = vec![bent(&build(&scene), deflection)];
-        let peak = outcome(&scene).1.unwrap();
+        let mut body = bar(BENT);
+        body.initial.modal_displacement = vec![bent(&build(&body), deflection)];
+        let peak = outcome(&body).1.unwrap();
         assert_eq!([peak.left_out, peak.max_left_out].map(|stated| stated.is_some()), [is_stated; 2], "{peak:?}");
     }
 }
@@ -154,8 +154,8 @@ fn what_large_modes_leave_out_of_a_body_that_is_bent_far_is_not_stated() {
 /// Closed form: no stress along the axis of a bar in pure bending.
 #[test]
 fn a_bar_that_is_bent_far_is_not_compressed_along_its_middle() {
-    let scene = bar(BENT);
-    let model = build(&scene);
+    let body = bar(BENT);
+    let model = build(&body);
     assert!(model.physics.effects[Effect::LargeDeflection]);
     let mut q = vec![0.0; model.body.flexible()];
     q[0] = bent(&model, 0.1);

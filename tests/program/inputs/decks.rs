@@ -7,7 +7,7 @@ use flexframe::campbell::{AboutRest, CampbellSettings, Speeds, campbell};
 use flexframe::fmu::{FmuSettings, pack};
 use flexframe::model::{Builder, Model};
 use flexframe::new_scene::{ImportSettings, scene_text};
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 
 use crate::program::{done, json, numbers};
 
@@ -104,7 +104,7 @@ fn decks_of_all_kinds_have_the_masses_and_frequencies_of_other_programs() {
         let (text, notes) = scene_text(&path, &settings).unwrap_or_else(|error| panic!("{name}: {error}"));
         // Static shapes of a marker and few modes are not enough for these digits.
         let count = if text.contains("\n[body.markers") { "flexible = 10" } else { "flexible = 3" };
-        let scene = Scene::parse(&text.replace("flexible = 10", count), folder.join("scene.toml")).unwrap();
+        let scene = Body::parse(&text.replace("flexible = 10", count), folder.join("scene.toml")).unwrap();
         let model = Model::build(&scene, |_| ()).unwrap_or_else(|error| panic!("{name}: {error}"));
         let found = [vec![model.body.mass], model.natural_frequencies()].concat();
         // Short fields have five digits.
@@ -116,14 +116,14 @@ fn decks_of_all_kinds_have_the_masses_and_frequencies_of_other_programs() {
             let commented = "# [[constraints]]\n# kind = \"clamp\"\n# group = \"FIX\"";
             assert!(text.contains(commented), "{text}");
             let held = text.replace(commented, &commented.replace("# ", "")).replace("angular_velocity = ", "# ");
-            let model = Model::build(&Scene::parse(&held, folder.join("held.toml")).unwrap(), |_| ()).unwrap();
+            let model = Model::build(&Body::parse(&held, folder.join("held.toml")).unwrap(), |_| ()).unwrap();
             for (found, wanted) in model.natural_frequencies().iter().zip([2039.548, 4684.613, 9362.699]) {
                 assert!((found / wanted - 1.0).abs() < 2e-4, "held: {found} for {wanted}");
             }
         }
         if name == "nastran_rbe3_off.bdf" {
             let refused = |from: &str, to: &str| {
-                let scene = Scene::parse(&text.replace(from, to), folder.join("other.toml"));
+                let scene = Body::parse(&text.replace(from, to), folder.join("other.toml"));
                 let scene = scene.map_err(|error| error.to_string());
                 scene
                     .and_then(|scene| Model::build(&scene, |_| ()).map_err(|error| error.to_string()))
@@ -141,7 +141,7 @@ fn decks_of_all_kinds_have_the_masses_and_frequencies_of_other_programs() {
             }
             let folder = tempfile::tempdir().unwrap();
             let counted = text.replace("flexible = 10", "flexible = 1");
-            let scene = Scene::parse(&counted, path.with_extension("toml")).unwrap();
+            let scene = Body::parse(&counted, path.with_extension("toml")).unwrap();
             let settings = FmuSettings { library: Some("none".into()) };
             let packed =
                 pack(&scene.clone().into(), &Builder::default(), &folder.path().join("x.fmu"), &settings, |_| ());

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use flexframe::fmu::marker;
 use flexframe::model::Builder;
-use flexframe::scene::System;
+use flexframe::scene::Scene;
 use rustix::fs::inotify;
 use rustix::io::Errno;
 
@@ -158,8 +158,8 @@ fn each_command_opens_what_is_in_the_list_of_files_that_are_read() {
         let output = command_in(folder, &arguments).output().unwrap();
         assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     }
-    let system = System::read(folder.join("every.toml")).unwrap();
-    let files: BTreeSet<String> = Builder::default().files(&system).iter().map(|file| name_of(file)).collect();
+    let scene = Scene::read(folder.join("every.toml")).unwrap();
+    let files: BTreeSet<String> = Builder::default().files(&scene).iter().map(|file| name_of(file)).collect();
     assert_eq!(files.len(), 14, "{files:?}");
     let inputs: BTreeSet<String> = fs::read_dir(folder).unwrap().map(|entry| name_of(&entry.unwrap().path())).collect();
     fs::create_dir(folder.join("o")).unwrap();

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 
 use flexframe::model::Builder;
 use flexframe::run::{RunError, RunSettings, resume, run};
-use flexframe::scene::System;
+use flexframe::scene::Scene;
 
 use super::files_opened::EVERY_KEY;
 use crate::program::command_in;
@@ -29,8 +29,8 @@ fn every_key_with_a_path_is_in_the_list_of_files_that_are_read() {
     fs::write(at("deck.inp"), "*INCLUDE, INPUT=included.txt\n").unwrap();
     fs::write(at("included.txt"), "").unwrap();
     names.extend(["scene.toml", "included.txt"]);
-    let system = System::parse(EVERY_KEY, at("scene.toml")).unwrap();
-    let files = Builder::default().files(&system);
+    let scene = Scene::parse(EVERY_KEY, at("scene.toml")).unwrap();
+    let files = Builder::default().files(&scene);
     assert_eq!(files.iter().collect::<BTreeSet<_>>().len(), files.len(), "{files:?}");
     let expected: BTreeSet<PathBuf> = names.into_iter().map(at).collect();
     assert_eq!(files.into_iter().collect::<BTreeSet<_>>(), expected);
@@ -112,11 +112,11 @@ fn rows_of_a_sweep_follow_from_the_table_of_a_motor() {
 #[test]
 fn a_run_with_joints_does_not_go_on_with_another_table() {
     let folder = desk();
-    let system = System::read(folder.path().join("wheel.toml")).unwrap();
+    let scene = Scene::read(folder.path().join("wheel.toml")).unwrap();
     let settings = RunSettings { rows_alone: false, check: false, ..RunSettings::default() };
     // The run stops at its first row.
     let asked = RunSettings { stop: Arc::new(AtomicBool::new(true)), ..settings.clone() };
-    let stopped = run(&system, folder.path(), &asked, |_| ());
+    let stopped = run(&scene, folder.path(), &asked, |_| ());
     let Err(RunError::Stopped { part, .. }) = stopped else { panic!("{stopped:?}") };
     fs::write(folder.path().join("motor.csv"), "0, 1\n1, 2\n").unwrap();
     let refused = resume(&part, &settings, |_| ());

@@ -9,14 +9,14 @@ use flexframe::dynamics::Rows;
 use flexframe::model::{Builder, Cache, Model};
 use flexframe::modes::{modes, reduce};
 use flexframe::run::{RunError, RunReport, RunSettings, results_path, run};
-use flexframe::scene::{Scene, System};
+use flexframe::scene::{Body, Scene};
 use flexframe::surface::Surface;
 use results::{Results, unfinished};
 
 const UNITS: &str = "title = \"x\"\nunits = { length = \"mm\", mass = \"Mg\", time = \"s\" }\n";
 
-fn scene(text: &str) -> Scene {
-    Scene::parse(&format!("{UNITS}{text}"), "scene.toml").unwrap()
+fn scene(text: &str) -> Body {
+    Body::parse(&format!("{UNITS}{text}"), "scene.toml").unwrap()
 }
 
 fn report(text: &str) -> RunReport {
@@ -168,13 +168,13 @@ fn of_a_load_that_bends_the_body_without_end_the_run_stops() {
 /// eighth mode swings by 0.18 of the largest coordinate beside where it should be.
 #[test]
 fn of_modes_that_long_steps_get_wrong_though_the_energy_is_right_there_is_one() {
-    let mut scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/accuracy/spin.toml")).unwrap();
+    let mut body = Body::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/accuracy/spin.toml")).unwrap();
     let mut with_step = |step: f64| {
-        scene.time.control = flexframe::scene::StepControl::Fixed(step);
-        scene.rows = flexframe::scene::Rows::EverySteps(1);
-        let table = advise(&scene, &Builder::default(), false, |_| ()).unwrap();
+        body.time.control = flexframe::scene::StepControl::Fixed(step);
+        body.rows = flexframe::scene::Rows::EverySteps(1);
+        let table = advise(&body, &Builder::default(), false, |_| ()).unwrap();
         let report =
-            run(&scene.clone().into(), tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ()).unwrap().1;
+            run(&body.clone().into(), tempfile::tempdir().unwrap().path(), &RunSettings::default(), |_| ()).unwrap().1;
         (table.rows.into_iter().find(|row| row.subject.name() == "step").unwrap(), report)
     };
     let (row, report) = with_step(2.5e-3);
@@ -210,7 +210,7 @@ fn of_long_exact_steps() {
 
 /// A clamped bar of 200 mm whose first mode begins with a displacement of a part of its length, and whose first two modes begin with
 /// velocities over ω. It ends after half a period.
-fn clamped(modes: &str, displacement: f64, velocities: [f64; 2]) -> Scene {
+fn clamped(modes: &str, displacement: f64, velocities: [f64; 2]) -> Body {
     let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/../../crates/model/tests/data/bar.msh");
     let of = |q: f64, [v, w]: [f64; 2]| {
         scene(&format!(
@@ -229,10 +229,10 @@ fn clamped(modes: &str, displacement: f64, velocities: [f64; 2]) -> Scene {
 /// Independent reference: the full body, which the run is checked by. The model does not judge itself.
 #[test]
 fn of_large_modes_it_is_the_check_that_says_how_right_they_are() {
-    let report = |scene: &Scene| {
+    let report = |body: &Body| {
         let folder = tempfile::tempdir().unwrap();
         let settings = RunSettings { check: true, ..RunSettings::default() };
-        run(&scene.clone().into(), folder.path(), &settings, |_| ()).unwrap().1
+        run(&body.clone().into(), folder.path(), &settings, |_| ()).unwrap().1
     };
     let error = |report: &RunReport| report.check.as_ref().unwrap().bodies[0].worst().unwrap().state.error;
     let right = report(&clamped("", 0.15, [0.0; 2]));
@@ -248,15 +248,15 @@ fn of_large_modes_it_is_the_check_that_says_how_right_they_are() {
 
 #[test]
 fn far_beyond_it_the_run_stops_and_its_file_can_be_read() {
-    let scene = clamped("large = 2\n", 0.0, [0.95, 0.95]);
+    let body = clamped("large = 2\n", 0.0, [0.95, 0.95]);
     let folder = tempfile::tempdir().unwrap();
     let refusal = |result: Result<(Vec<Model>, RunReport), RunError>| match result {
         Err(RunError::Refused { time, refusal: Refusal::Deflected { deflection }, .. }) => (time, deflection),
         other => panic!("{other:?}"),
     };
-    let (time, deflection) = refusal(run(&scene.clone().into(), folder.path(), &RunSettings::default(), |_| ()));
+    let (time, deflection) = refusal(run(&body.clone().into(), folder.path(), &RunSettings::default(), |_| ()));
     assert!(time > 1e-4 && deflection > 1.0, "{time} {deflection}");
-    let part = unfinished(results_path(&scene.clone().into(), folder.path()));
+    let part = unfinished(results_path(&body.clone().into(), folder.path()));
     let rows = Results::open(&part, &COLUMNS).unwrap().rows();
     assert!(rows > 0 && rows as f64 <= 1.0 + time / 1e-4, "{rows} at {time}");
 }
@@ -264,8 +264,8 @@ fn far_beyond_it_the_run_stops_and_its_file_can_be_read() {
 /// Conserved: a picture shows what a point of the output does: the shapes that follow, too.
 #[test]
 fn the_surface_moves_as_the_points_do() {
-    let scene = clamped("large = 1\n", 0.2, [0.0; 2]);
-    let model = Model::build(&scene, |_| ()).unwrap();
+    let body = clamped("large = 1\n", 0.2, [0.0; 2]);
+    let model = Model::build(&body, |_| ()).unwrap();
     let surface = Surface::of_model(&model);
     let tip = surface
         .shapes
@@ -273,7 +273,7 @@ fn the_surface_moves_as_the_points_do() {
         .iter()
         .position(|x| (x[0] - 200.0).hypot(x[1] - 5.0).hypot(x[2] - 5.0) < 1e-9)
         .unwrap();
-    let mut simulation = model.start_with(&scene, *scene.method(), scene.time.control, Rows::EverySteps(1)).unwrap();
+    let mut simulation = model.start_with(&body, *body.method(), body.time.control, Rows::EverySteps(1)).unwrap();
     let now = simulation.observation().unwrap();
     let drawn = surface.displacements(&model.coordinates(&now.modal_displacement))[tip];
     assert!(
@@ -305,7 +305,7 @@ fn of_a_mesh_that_was_not_read_whole() {
     let scene = |body: &str| {
         let rest = "[modes]\nflexible = 2\n[time]\nend = 1e-4\nstep = 1e-5\n";
         let units = UNITS.replace("\"m\"", "\"mm\"").replace("kg", "Mg");
-        Scene::parse(&format!("{units}[body]\n{body}\n{rest}"), path("bar.toml")).unwrap()
+        Body::parse(&format!("{units}[body]\n{body}\n{rest}"), path("bar.toml")).unwrap()
     };
     let material = "material = { young_modulus = 210e3, poisson_ratio = 0.3, density = 7.85e-9 }";
     let imported = scene(&format!("mesh = \"bar.inp\"\n{material}"));
@@ -334,8 +334,8 @@ fn wheel(rest: &str) -> RunReport {
          [time]\nend = 2.0\ntolerance = 1e-6\n[output]\ninterval = 0.1\n"
     );
     let folder = tempfile::tempdir().unwrap();
-    let system = System::parse(&text, "wheel.toml").unwrap();
-    let report = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
+    let scene = Scene::parse(&text, "wheel.toml").unwrap();
+    let report = run(&scene, folder.path(), &RunSettings::default(), |_| ()).unwrap().1;
     let results = Results::open(&report.results, &COLUMNS).unwrap();
     let [angle, rate] = ["angle", "rate"].map(|name| results.numbers(&format!("joints/axle/{name}")).unwrap()[4]);
     // Independent reference: PchipInterpolator of SciPy at 0.4, and its derivative; straight lines.

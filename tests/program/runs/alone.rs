@@ -6,7 +6,7 @@ use std::process::Output;
 
 use flexframe::columns::COLUMNS;
 use flexframe::run::{RunSettings, run};
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 use results::Results;
 
 use crate::program::command_in;
@@ -169,9 +169,9 @@ fn shapes_that_are_not_in_the_results_file_come_from_the_body_file_that_it_names
     let desk = desk(MESH);
     done(desk.path(), &["reduce", "beam.toml", "--stress", "-o", "some.body.h5"]);
     fs::write(desk.path().join("of_body.toml"), BEAM.replace("BODY", "file = \"some.body.h5\"")).unwrap();
-    let scene = Scene::read(desk.path().join("of_body.toml")).unwrap();
+    let body = Body::read(desk.path().join("of_body.toml")).unwrap();
     let out = desk.path().join("out");
-    run(&scene.clone().into(), &out, &RunSettings::default(), |_| ()).unwrap();
+    run(&body.clone().into(), &out, &RunSettings::default(), |_| ()).unwrap();
     what_comes_after(desk.path(), "out/of_body.h5");
     let with_shapes = fs::metadata(out.join("of_body.h5")).unwrap().len();
     // Rows alone have no trust card.
@@ -183,7 +183,7 @@ fn shapes_that_are_not_in_the_results_file_come_from_the_body_file_that_it_names
     let expected = page("page.html");
 
     let settings = RunSettings { overwrite: true, rows_alone: true, ..RunSettings::default() };
-    run(&scene.clone().into(), &out, &settings, |_| ()).unwrap();
+    run(&body.clone().into(), &out, &settings, |_| ()).unwrap();
     assert!(fs::metadata(out.join("of_body.h5")).unwrap().len() < with_shapes);
     let metadata = Results::open(out.join("of_body.h5"), &COLUMNS).unwrap().metadata;
     assert!(metadata.bodies[0].model.mesh.as_ref().unwrap().body_file.ends_with("some.body.h5"));

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use flexframe::columns::COLUMNS;
 use flexframe::run::{RunError, RunProgress, RunSettings, resume, run};
-use flexframe::scene::{Scene, System};
+use flexframe::scene::{Body, Scene};
 use results::{Results, Scope, histories};
 use serde_json::Value;
 
@@ -152,11 +152,11 @@ fn the_system_has_the_energy_and_momentum_of_its_bodies() {
 fn a_run_that_was_stopped_ends_in_the_same_file_and_what_is_there_is_kept() {
     for time in [CONTROLLED, FIXED] {
         let desk = Desk::new(time);
-        let system = System::read(desk.path("two.toml")).unwrap();
+        let scene = Scene::read(desk.path("two.toml")).unwrap();
         let settings = RunSettings::default();
-        run(&system, &desk.path("whole"), &settings, |_| ()).unwrap();
+        run(&scene, &desk.path("whole"), &settings, |_| ()).unwrap();
         let expected = std::fs::read(desk.path("whole/two.h5")).unwrap();
-        let Err(error) = run(&system, &desk.path("whole"), &settings, |_| ()) else { panic!("there is a file") };
+        let Err(error) = run(&scene, &desk.path("whole"), &settings, |_| ()) else { panic!("there is a file") };
         assert!(error.to_string().contains("two.h5"), "{error}");
 
         // Again and again, so soon as it moves.
@@ -167,7 +167,7 @@ fn a_run_that_was_stopped_ends_in_the_same_file_and_what_is_there_is_kept() {
                 stop.store(true, Ordering::Relaxed);
             }
         };
-        let first = run(&system, &desk.path("parts"), &settings, stops);
+        let first = run(&scene, &desk.path("parts"), &settings, stops);
         let Err(RunError::Stopped { .. }) = first else { panic!("{first:?}") };
         let mut rounds = 0;
         loop {
@@ -296,7 +296,7 @@ fn one_body_is_asked_for_where_there_are_several() {
     }
     // By its name it is a scene of one, whose results carry the whole text.
     let text = std::fs::read_to_string(desk.path("two.toml")).unwrap();
-    let bar = Scene::parse_body(&text, desk.path("two.toml"), Some("bar")).unwrap();
+    let bar = Body::parse_body(&text, desk.path("two.toml"), Some("bar")).unwrap();
     run(&bar.into(), desk.folder.path(), &RunSettings::default(), |_| ()).unwrap();
     let metadata = desk.results("two.bar.h5").metadata;
     assert_eq!(metadata.scene_text, text);

@@ -7,7 +7,7 @@ use std::process::Command;
 
 use flexframe::model::Builder;
 use flexframe::modes::modes;
-use scene::{Flexible, Scene};
+use scene::{Body, Flexible};
 
 const SCENE: &str = "FLEXFRAME_PEAK_SCENE";
 
@@ -23,10 +23,10 @@ fn status(key: &str) -> f64 {
 fn the_memory_that_is_printed_is_used() {
     if let Ok(asked) = std::env::var(SCENE) {
         let (path, count) = asked.split_once('*').unwrap();
-        let mut scene = Scene::read(path).unwrap();
-        scene.modes.flexible = Flexible::Count(count.parse().unwrap());
+        let mut body = Body::read(path).unwrap();
+        body.modes.flexible = Flexible::Count(count.parse().unwrap());
         let before = status("VmRSS:");
-        let (_, report) = modes(&scene, &Builder::default(), None, |_| {}).unwrap();
+        let (_, report) = modes(&body, &Builder::default(), None, |_| {}).unwrap();
         let (used, estimate) = (status("VmHWM:") - before, report.number("mesh.peak_bytes").unwrap());
         println!("{asked}: {:.0} MB used, {:.0} MB estimate", 1e-6 * used, 1e-6 * estimate);
         assert!((0.8..1.2).contains(&(estimate / used)), "{asked}: {estimate:e} estimate, {used:e} used");

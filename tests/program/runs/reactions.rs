@@ -6,16 +6,16 @@ use flexframe::model::Model;
 use flexframe::nalgebra::Vector3;
 use flexframe::results::Results;
 use flexframe::run::{RunSettings, run};
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 
 fn rows(text: &str) -> (Model, Vec<Observation>) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/of_a_test.toml");
-    rows_of(&Scene::parse(text, path).unwrap())
+    rows_of(&Body::parse(text, path).unwrap())
 }
 
-fn rows_of(scene: &Scene) -> (Model, Vec<Observation>) {
-    let model = Model::build(scene, |_| ()).unwrap();
-    let rows = model.start(scene).unwrap().map(Result::unwrap).collect();
+fn rows_of(body: &Body) -> (Model, Vec<Observation>) {
+    let model = Model::build(body, |_| ()).unwrap();
+    let rows = model.start(body).unwrap().map(Result::unwrap).collect();
     (model, rows)
 }
 
@@ -34,8 +34,8 @@ axis = [0.0, 0.0, 1.0]
 /// sin θ (1 − m d²/J) across it.
 #[test]
 fn the_bearing_of_a_pendulum_gives_what_the_closed_form_has() {
-    let scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/pendulum.toml")).unwrap();
-    let (_, rows) = rows_of(&scene);
+    let body = Body::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/pendulum.toml")).unwrap();
+    let (_, rows) = rows_of(&body);
     let (mass, arm, inertia, gravity, start) = (3.0, 0.5, 1.0, 9.81, 2.0_f64);
     for now in &rows {
         let theta = start - now.reaction.hinge_angle;
@@ -126,9 +126,9 @@ fn the_hinge_of_a_spinning_bar_holds_it_on_its_circle() {
 /// Closed form: θ(t) is the integral of the given speed; the energy is what the drive has put in.
 #[test]
 fn the_drive_of_a_spin_up_does_the_work_that_the_beam_has() {
-    let mut scene = Scene::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spin_up.toml")).unwrap();
-    scene.time.end = 17.0;
-    let (_, rows) = rows_of(&scene);
+    let mut body = Body::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spin_up.toml")).unwrap();
+    body.time.end = 17.0;
+    let (_, rows) = rows_of(&body);
     let last = rows.last().unwrap();
     // 6·15/2 rad in the rise, and 6 rad a second after it: more than nine turns.
     assert!((last.reaction.hinge_angle - (45.0 + 12.0)).abs() < 1e-8, "{:?}", last.reaction);
@@ -171,9 +171,9 @@ fn a_hinge_gives_no_moment_about_its_axis_to_a_rod_that_bends_far() {
 /// A beam of 8 m with these supports and loads, and the reactions in its results file.
 fn on_supports(rest: &str) -> (Model, Results) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/of_a_test.toml");
-    let scene = Scene::parse(&format!("{BEAM}{rest}"), path).unwrap();
+    let body = Body::parse(&format!("{BEAM}{rest}"), path).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let (mut models, report) = run(&scene.into(), folder.path(), &RunSettings::default(), |_| ()).unwrap();
+    let (mut models, report) = run(&body.into(), folder.path(), &RunSettings::default(), |_| ()).unwrap();
     (models.remove(0), Results::open(report.results, &COLUMNS).unwrap())
 }
 

@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use flexframe::columns::COLUMNS;
 use flexframe::results::Results;
 use flexframe::run::{Estimate, RunError, RunProgress, RunSettings, run};
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 
 use crate::program::command_in;
 
@@ -21,8 +21,8 @@ body = { rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[1.0, 0, 0
 initial = { angular_velocity = [0.0, 0.0, 1e-3] }
 "#;
 
-fn scene(time: &str) -> Scene {
-    Scene::parse(&format!("{SCENE}{time}"), "top.toml").unwrap()
+fn scene(time: &str) -> Body {
+    Body::parse(&format!("{SCENE}{time}"), "top.toml").unwrap()
 }
 
 /// Runs a scene. Returns what was estimate, what became of it, and the bytes of its file.
@@ -143,9 +143,9 @@ fn accelerations_are_absolute_and_relative_to_a_shaken_support_by_name() {
              loads = [{{ kind = \"base-acceleration\", direction = [0, 0, 1], amplitude = 3.0, history = {{ kind = \"half-sine\", duration = 1.0 }} }}]\n\
              time = {{ end = 1.0, step = 0.01 }}\noutput = {{ points = {{ P = [0.5, 0, 0] }} }}"
         );
-        let scene = Scene::parse(&text, "top.toml").unwrap();
+        let given = Body::parse(&text, "top.toml").unwrap();
         let settings = RunSettings { overwrite: true, ..RunSettings::default() };
-        run(&scene.into(), folder.path(), &settings, |_| ()).unwrap();
+        run(&given.into(), folder.path(), &settings, |_| ()).unwrap();
         let results = Results::open(folder.path().join("top.h5"), &COLUMNS).unwrap();
         let along = |path: &str| -> Vec<f64> {
             results.vectors::<3>(path).unwrap_or_else(|| panic!("{path}")).iter().map(|vector| vector[2]).collect()

@@ -2,22 +2,22 @@
 
 use flexframe::advice::{Refusal, RestOfBody};
 use flexframe::model::Model;
-use flexframe::scene::{Choice, Constraint, Effect, Scene};
+use flexframe::scene::{Body, Choice, Constraint, Effect};
 use nalgebra::Vector3;
 
-fn scene(name: &str) -> Scene {
-    Scene::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+fn scene(name: &str) -> Body {
+    Body::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
 /// Time and place of the tip in the axes of the body, a row for each row of the results.
-fn tip(scene: &Scene) -> Vec<(f64, Vector3<f64>)> {
-    tip_of(&Model::build(scene, |_| ()).unwrap(), scene)
+fn tip(body: &Body) -> Vec<(f64, Vector3<f64>)> {
+    tip_of(&Model::build(body, |_| ()).unwrap(), body)
 }
 
-fn tip_of(model: &Model, scene: &Scene) -> Vec<(f64, Vector3<f64>)> {
+fn tip_of(model: &Model, body: &Body) -> Vec<(f64, Vector3<f64>)> {
     let (_, point) = &model.points[0];
     let mut rows = Vec::new();
-    for now in model.start(scene).unwrap() {
+    for now in model.start(body).unwrap() {
         let now = now.unwrap();
         let place = point.position_body() + now.points[0].displacement;
         rows.push((now.time, now.attitude.to_body(&place)));
@@ -48,10 +48,10 @@ fn the_beam_of_simo_and_vu_quoc_lags_and_grows_longer() {
 
 #[test]
 fn the_beam_of_simo_and_vu_quoc_is_refused_without_stiffening() {
-    let mut scene = scene("spin_up");
-    scene.effects.choices[Effect::GeometricStiffening] = Choice::Off;
-    let model = Model::build(&scene, |_| ()).unwrap();
-    let Err(error) = model.start(&scene) else { panic!("it starts") };
+    let mut body = scene("spin_up");
+    body.effects.choices[Effect::GeometricStiffening] = Choice::Off;
+    let model = Model::build(&body, |_| ()).unwrap();
+    let Err(error) = model.start(&body) else { panic!("it starts") };
     let message = error.to_string();
     for words in ["its spin of 6.000 rad per time", "from 3.80", "turn geometric_stiffening on"] {
         assert!(message.contains(words), "{message}");
@@ -61,27 +61,27 @@ fn the_beam_of_simo_and_vu_quoc_is_refused_without_stiffening() {
 /// Independent reference: a computation of the beam with stiffening, given with the project.
 #[test]
 fn the_beam_of_wu_and_haug_lags_as_beam_theory_says() {
-    let mut scene = scene("wu_haug");
+    let mut body = scene("wu_haug");
     // Beam theory with stiffening. Measured: 0.28023, 0.53436, 0.75255.
     for (speed, expected, at) in [(2.0, 0.2802, 7.02), (4.0, 0.5344, 6.76), (6.0, 0.7526, 6.54)] {
-        set_speed(&mut scene, speed);
-        let (time, lag) = lag(&tip(&scene));
+        set_speed(&mut body, speed);
+        let (time, lag) = lag(&tip(&body));
         assert!((time - at).abs() < 0.03 && (lag / expected - 1.0).abs() < 1e-3, "{speed}: {lag} at {time}");
     }
     // Without stiffening the model has no rest from 2.911 rad/s on: it is refused at 4 and 6, where the full body stands.
-    scene.effects.choices[Effect::GeometricStiffening] = Choice::Off;
+    body.effects.choices[Effect::GeometricStiffening] = Choice::Off;
     for speed in [2.0, 4.0, 6.0] {
-        set_speed(&mut scene, speed);
-        let model = Model::build(&scene, |_| ()).unwrap();
+        set_speed(&mut body, speed);
+        let model = Model::build(&body, |_| ()).unwrap();
         match model.refusal {
             // At 2 it lags too far. Beam theory: 0.343; measured: 0.34313.
             None => {
-                let (_, lag) = lag(&tip_of(&model, &scene));
+                let (_, lag) = lag(&tip_of(&model, &body));
                 assert!(speed == 2.0 && (lag / 0.343 - 1.0).abs() < 2e-3, "{speed}: {lag}");
             }
             Some(Refusal::Indefinite { critical, of_body: RestOfBody::Stable { .. }, .. }) => {
                 assert!(speed > 2.0 && (critical / 2.911 - 1.0).abs() < 1e-3, "{speed}: {critical}");
-                let refused = model.start(&scene).err().map(|error| error.to_string()).unwrap_or_default();
+                let refused = model.start(&body).err().map(|error| error.to_string()).unwrap_or_default();
                 assert!(refused.contains("geometric_stiffening") && refused.contains("has a stable one"), "{refused}");
             }
             other => panic!("{speed}: {other:?}"),
@@ -89,7 +89,7 @@ fn the_beam_of_wu_and_haug_lags_as_beam_theory_says() {
     }
 }
 
-fn set_speed(scene: &mut Scene, speed: f64) {
-    let Some(Constraint::Hinge { motion: Some(driven), .. }) = &mut scene.constraint else { unreachable!() };
+fn set_speed(body: &mut Body, speed: f64) {
+    let Some(Constraint::Hinge { motion: Some(driven), .. }) = &mut body.constraint else { unreachable!() };
     driven.amplitude = speed;
 }

@@ -20,6 +20,6 @@ const _: () = {
     is_send_and_sync::<advice::AdviceError>();
     is_send_and_sync::<results::Results>();
     is_send_and_sync::<results::Writer<flexframe::row::Row>>();
-    is_send_and_sync::<scene::Scene>();
+    is_send_and_sync::<scene::Body>();
     is_send_and_sync::<model::Model>();
 };

@@ -6,16 +6,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use flexframe::columns::COLUMNS;
 use flexframe::run::{RunError, RunProgress, RunReport, RunSettings, resume, run};
-use flexframe::scene::System;
+use flexframe::scene::Scene;
 use results::Results;
 
 use crate::program::command_in;
 
 const SCENE: &str = include_str!("../../tied.toml");
 
-fn system() -> System {
+fn system() -> Scene {
     let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tied.toml"));
-    System::parse(SCENE, file).unwrap()
+    Scene::parse(SCENE, file).unwrap()
 }
 
 /// Independent reference: the angle of the rod and the place of the slider at 0.1 s, of the plane beam of Simeon (1998).
@@ -60,11 +60,11 @@ fn a_run_with_joints_goes_on_bit_for_bit() {
                    [[bushings]]\nname = \"pad\"\nbetween = [\"ground.guide\", \"slider.back\"]\n\
                    stiffness = { translation = [9.0, 9.0, 9.0] }\n";
     let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tied.toml"));
-    let system = System::parse(&format!("{SCENE}\n{springs}"), file).unwrap();
-    let (_, report) = run(&system, &whole, &settings, |_| ()).unwrap();
+    let scene = Scene::parse(&format!("{SCENE}\n{springs}"), file).unwrap();
+    let (_, report) = run(&scene, &whole, &settings, |_| ()).unwrap();
     let stop = Arc::new(AtomicBool::new(false));
     let asked = RunSettings { stop: stop.clone(), ..settings.clone() };
-    let stopped = run(&system, &cut, &asked, |progress| {
+    let stopped = run(&scene, &cut, &asked, |progress| {
         if matches!(progress, RunProgress::Motion(part) if part > 0.3) {
             stop.store(true, Ordering::Relaxed);
         }
@@ -90,10 +90,10 @@ fn a_run_with_joints_goes_on_bit_for_bit() {
 #[test]
 fn gauss_leads_a_scene_to_the_same_end() {
     let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tied.toml"));
-    let system = System::parse(&SCENE.replace("[time]", "[time]\nscheme = \"gauss\""), file).unwrap();
+    let scene = Scene::parse(&SCENE.replace("[time]", "[time]\nscheme = \"gauss\""), file).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let settings = RunSettings { rows_alone: true, ..RunSettings::default() };
-    let (_, report) = run(&system, folder.path(), &settings, |_| ()).unwrap();
+    let (_, report) = run(&scene, folder.path(), &settings, |_| ()).unwrap();
     assert_eq!(report.scheme, "gauss");
     let results = Results::open(&report.results, &COLUMNS).unwrap();
     let slider = *results.vectors::<3>("bodies/slider/position").unwrap().last().unwrap();
@@ -154,9 +154,9 @@ fn a_joint_to_the_ground_moves_a_body_as_its_constraint_does() {
         "[[joints]]\nname = \"hinge\"\nkind = \"revolute\"\nbetween = [\"ground\", \"body.root\"]\naxis = [0, 1, 0]\n";
     let results = |hold: &str| {
         let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/hung.toml"));
-        let system = System::parse(&format!("{HUNG}\n{hold}"), file).unwrap();
+        let scene = Scene::parse(&format!("{HUNG}\n{hold}"), file).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        let (_, report) = run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap();
+        let (_, report) = run(&scene, folder.path(), &RunSettings::default(), |_| ()).unwrap();
         (Results::open(&report.results, &COLUMNS).unwrap(), report.steps)
     };
     let ((held, steps_held), (tied, steps_tied)) = (results(constraint), results(joint));
@@ -209,7 +209,7 @@ fn a_constraint_stands_beside_springs_and_joints() {
 #[track_caller]
 fn ran(scene: &str, file: &Path) -> (tempfile::TempDir, RunReport) {
     let folder = tempfile::tempdir().unwrap();
-    let system = System::parse(scene, file).unwrap();
+    let system = Scene::parse(scene, file).unwrap();
     let (_, report) =
         run(&system, folder.path(), &RunSettings::default(), |_| ()).unwrap_or_else(|error| panic!("{error}: {scene}"));
     (folder, report)
@@ -383,9 +383,9 @@ fn a_joint_that_holds_nothing_holds_nothing() {
                 markers = { m = { at = [0, 0, 0] } }\nloads = [{ kind = \"gravity\", direction = [0, 0, -1], amplitude = 8.0 }]\n\
                 [[joints]]\nname = \"none\"\nlocked = []\naxis = [0, 0, 1]\nbetween = [\"ground\", \"ball.m\"]\n[time]\nend = 0.5\ntolerance = 1e-6\n";
     let folder = tempfile::tempdir().unwrap();
-    let system = System::parse(text, folder.path().join("ball.toml")).unwrap();
+    let scene = Scene::parse(text, folder.path().join("ball.toml")).unwrap();
     let settings = RunSettings { check: false, ..RunSettings::default() };
-    let (_, report) = run(&system, folder.path(), &settings, |_| ()).unwrap();
+    let (_, report) = run(&scene, folder.path(), &settings, |_| ()).unwrap();
     let results = Results::open(&report.results, &COLUMNS).unwrap();
     let [_, _, height] = *results.vectors::<3>("bodies/ball/position").unwrap().last().unwrap();
     assert!((height + 1.0).abs() < 1e-9, "{height}");
@@ -402,9 +402,9 @@ fn what_is_refused_of_a_body_in_joints_names_it() {
                 [[joints]]\nname = \"root\"\nkind = \"revolute\"\nbetween = [\"ground\", \"arm.root\"]\naxis = [0, 0, 1]\n\
                 [[joints]]\nname = \"tip\"\nkind = \"revolute\"\nbetween = [\"arm.tip\", \"bob.middle\"]\naxis = [0, 0, 1]\n\
                 [time]\nend = 1.0\ntolerance = 1e-4\n[output]\ninterval = 0.1\n";
-    let system = System::parse(text, Path::new("arm_and_bob.toml")).unwrap();
+    let scene = Scene::parse(text, Path::new("arm_and_bob.toml")).unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let message = run(&system, folder.path(), &RunSettings::default(), |_| ()).err().unwrap().to_string();
+    let message = run(&scene, folder.path(), &RunSettings::default(), |_| ()).err().unwrap().to_string();
     let at = "arm_and_bob.toml:13:11: `bodies.bob.rigid.inertia`";
     for words in [at, "a point mass", "that the joint \"tip\" would turn", "give it an inertia"] {
         assert!(message.contains(words), "{message}");

@@ -26,14 +26,14 @@ pub struct Advise {
 impl Advise {
     pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, verify } = self;
-        let system = session.read_system(scene)?;
+        let scene = session.read_scene(scene)?;
         let mut reports = Vec::new();
-        for scene in &system.bodies {
-            let report = advise::advise(scene, &session.builder, verify, |p| session.bar.advise(p))?;
-            reports.push((scene.name.clone(), report));
+        for body in &scene.bodies {
+            let report = advise::advise(body, &session.builder, verify, |p| session.bar.advise(p))?;
+            reports.push((body.name.clone(), report));
         }
-        if system.has_connections() {
-            let systems = system_modes::system_advice(&system, &session.builder, |p| session.bar.build(p))?;
+        if scene.has_connections() {
+            let systems = system_modes::system_advice(&scene, &session.builder, |p| session.bar.build(p))?;
             drop(session.bar);
             return output::print(&AdviceOnSystems { bodies: reports, systems }, json);
         }

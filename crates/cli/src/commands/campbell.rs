@@ -3,7 +3,7 @@
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::campbell::{self, AboutRest, CampbellSettings, Speeds, SystemCampbellSettings};
-use flexframe::outputs::outputs_of_system;
+use flexframe::outputs::outputs_of_scene;
 
 use crate::arguments::values::{about_rest, axis, positive, speeds};
 use crate::arguments::{FolderArgs, ModeCountArgs, SceneArgs};
@@ -55,12 +55,12 @@ impl Campbell {
     pub fn execute(self, session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, axis, joint, speeds, orders, about_rest, modes, out } = self;
         out.check()?;
-        let system = session.read_one(scene, modes)?;
-        let outputs = outputs_of_system(&system, &session.builder, out.files.overwrite);
-        session.report(outputs, &out.folder(&system.path), &campbell::FILES, json, |session| {
-            let report = if system.has_connections() {
+        let scene = session.read_one(scene, modes)?;
+        let outputs = outputs_of_scene(&scene, &session.builder, out.files.overwrite);
+        session.report(outputs, &out.folder(&scene.path), &campbell::FILES, json, |session| {
+            let report = if scene.has_connections() {
                 let settings = SystemCampbellSettings { axis, joint, speeds, orders };
-                campbell::campbell_of_system(&system, &session.builder, &settings, |p| session.bar.campbell(p))
+                campbell::campbell_of_system(&scene, &session.builder, &settings, |p| session.bar.campbell(p))
             } else {
                 let axis = axis.ok_or_else(|| CliError::Option {
                     option: "--axis",
@@ -69,7 +69,7 @@ impl Campbell {
                     help: "give x, y, z, or three numbers such as 0,0.6,0.8".to_owned(),
                 })?;
                 let settings = CampbellSettings { axis, speeds, orders, about_rest };
-                campbell::campbell(system.only_body()?, &session.builder, &settings, |p| session.bar.campbell(p))
+                campbell::campbell(scene.only_body()?, &session.builder, &settings, |p| session.bar.campbell(p))
             };
             report.map_err(|error| modes.refusal(error))
         })

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::cost::{self, CostSettings};
-use flexframe::outputs::outputs_of_system;
+use flexframe::outputs::outputs_of_scene;
 
 use crate::arguments::values::{patience, positive};
 use crate::arguments::{FileArgs, SceneArgs};
@@ -35,11 +35,11 @@ impl Cost {
     pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, output, files, target, patience } = self;
         output::require_file("--output", output.as_deref())?;
-        let system = session.read_system(scene)?;
+        let scene = session.read_scene(scene)?;
         let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
-        let folder = folder(&system, output)?;
-        outputs_of_system(&system, &session.builder, files.overwrite).claim(&cost::files(&folder))?;
-        let report = cost::price_list(&system, &session.builder, &folder, settings, |p| session.bar.cost(p))?;
+        let folder = folder(&scene, output)?;
+        outputs_of_scene(&scene, &session.builder, files.overwrite).claim(&cost::files(&folder))?;
+        let report = cost::price_list(&scene, &session.builder, &folder, settings, |p| session.bar.cost(p))?;
         drop(session.bar);
         output::print(&report, json)
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::fmu::{self, FmuSettings};
-use flexframe::outputs::{Written, outputs_of_system};
+use flexframe::outputs::{Written, outputs_of_scene};
 use flexframe::plausible;
 
 use crate::arguments::{FileArgs, SceneArgs};
@@ -34,13 +34,13 @@ impl Fmu {
     pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, output, files, library } = self;
         output::require_file("--output", Some(&output))?;
-        let system = scene.read_system_or_body()?;
+        let scene = scene.read_scene_or_body_file()?;
         if !json {
-            output::doubts(plausible::doubts_of_system(&system));
+            output::doubts(plausible::doubts_of_scene(&scene));
         }
-        let outputs = outputs_of_system(&system, &session.builder, files.overwrite);
+        let outputs = outputs_of_scene(&scene, &session.builder, files.overwrite);
         outputs.and_input(&fmu::library_path(library.as_deref())).claim_as(&Written::FMU, &output)?;
-        let report = fmu::pack(&system, &session.builder, &output, &FmuSettings { library }, |p| session.bar.build(p))?;
+        let report = fmu::pack(&scene, &session.builder, &output, &FmuSettings { library }, |p| session.bar.build(p))?;
         drop(session.bar);
         output::print(&report, json)
     }

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::modes;
-use flexframe::outputs::{OutputError, Written, outputs_of_system};
+use flexframe::outputs::{OutputError, Written, outputs_of_scene};
 use flexframe::report::Report;
 use flexframe::{figures, mode_shapes, run, system_modes};
 use model::Model;
-use scene::{Scene, System};
+use scene::{Body, Scene};
 
 use crate::arguments::values::{at_time, point};
 use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
@@ -48,74 +48,74 @@ pub struct Modes {
 impl Modes {
     pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         output::require_file("--output", self.output.as_deref())?;
-        let mut system = session.read_system(self.scene.scene.clone())?;
-        self.check_one_body(&system)?;
+        let mut scene = session.read_scene(self.scene.scene.clone())?;
+        self.check_one_body(&scene)?;
         if let Some(time) = self.time {
-            check_time(&system, time)?;
+            check_time(&scene, time)?;
         }
-        self.modes.set(&mut system);
-        if let Some(to) = self.solver.take_of(&system.bodies, &mut session.builder, session.signals.slepc())? {
-            return session.write_only(system.only_body()?, &to, self.files.overwrite);
+        self.modes.set(&mut scene);
+        if let Some(to) = self.solver.take_of(&scene.bodies, &mut session.builder, session.signals.slepc())? {
+            return session.write_only(scene.only_body()?, &to, self.files.overwrite);
         }
         self.output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
-        let report = match system.has_connections() {
-            true => self.of_bodies_in_joints(&system, &mut session)?,
-            false => self.of_bodies(&system, &mut session)?,
+        let report = match scene.has_connections() {
+            true => self.of_bodies_in_joints(&scene, &mut session)?,
+            false => self.of_bodies(&scene, &mut session)?,
         };
         drop(session.bar);
         output::print(&report, self.scene.json)
     }
 
     /// Refuses what only one body has.
-    fn check_one_body(&self, system: &System) -> Result<(), CliError> {
-        let bodies = format!("a scene of {} bodies", system.bodies.len());
-        if self.mac.is_none() || system.bodies.len() == 1 {
+    fn check_one_body(&self, scene: &Scene) -> Result<(), CliError> {
+        let bodies = format!("a scene of {} bodies", scene.bodies.len());
+        if self.mac.is_none() || scene.bodies.len() == 1 {
             return Ok(());
         }
         let (expected, help) = ("a scene of one body, to compare it with another one", "name one: --body NAME");
         Err(CliError::Option { option: "--mac", found: bodies, expected: expected.to_owned(), help: help.to_owned() })
     }
 
-    fn of_bodies(&self, system: &System, session: &mut Session) -> Result<Report, Failure> {
-        let scenes = &system.bodies;
-        let picture = |folder: &Path, scene: &Scene| match &scene.name {
-            Some(body) => folder.join(format!("modes.{body}")),
+    fn of_bodies(&self, scene: &Scene, session: &mut Session) -> Result<Report, Failure> {
+        let bodies = &scene.bodies;
+        let picture = |folder: &Path, body: &Body| match &body.name {
+            Some(name) => folder.join(format!("modes.{name}")),
             None => folder.join("modes"),
         };
         if let Some(folder) = &self.output {
-            scenes.iter().try_for_each(modes::require_surface)?;
-            let pictures: Vec<_> = scenes.iter().flat_map(|scene| figures::files(&picture(folder, scene))).collect();
-            outputs_of_system(system, &session.builder, self.files.overwrite).claim(&pictures)?;
+            bodies.iter().try_for_each(modes::require_surface)?;
+            let pictures: Vec<_> = bodies.iter().flat_map(|body| figures::files(&picture(folder, body))).collect();
+            outputs_of_scene(scene, &session.builder, self.files.overwrite).claim(&pictures)?;
         }
         let (mut reports, mut pictures) = (Vec::new(), Vec::new());
-        for scene in scenes {
-            let (model, mut report) = self.of_body(scene, session)?;
+        for body in bodies {
+            let (model, mut report) = self.of_body(body, session)?;
             if let Some(other) = &self.mac {
-                modes::mac(scene, &model, other, &session.builder, &mut report, |p| session.bar.build(p))?;
+                modes::mac(body, &model, other, &session.builder, &mut report, |p| session.bar.build(p))?;
             }
-            if let Some(folder) = self.output.as_ref().filter(|_| model.meshed.is_some() || scenes.len() == 1) {
+            if let Some(folder) = self.output.as_ref().filter(|_| model.meshed.is_some() || bodies.len() == 1) {
                 make_folder(folder)?;
-                pictures.extend(mode_shapes::draw(scene, &model, &picture(folder, scene))?);
+                pictures.extend(mode_shapes::draw(body, &model, &picture(folder, body))?);
             }
-            reports.push((scene.name.clone(), report));
+            reports.push((body.name.clone(), report));
         }
         let mut report = Report::of_bodies(reports);
         report.files = pictures;
         Ok(report)
     }
 
-    fn of_body(&self, scene: &Scene, session: &mut Session) -> Result<(Model, Report), Failure> {
-        modes::modes(scene, &session.builder, self.about, |p| session.bar.build(p))
+    fn of_body(&self, body: &Body, session: &mut Session) -> Result<(Model, Report), Failure> {
+        modes::modes(body, &session.builder, self.about, |p| session.bar.build(p))
             .map_err(|error| self.modes.refusal(error.into()))
     }
 
     /// Modes of each system that joints make, and of the bodies that none ties.
-    fn of_bodies_in_joints(&self, system: &System, session: &mut Session) -> Result<Report, Failure> {
+    fn of_bodies_in_joints(&self, scene: &Scene, session: &mut Session) -> Result<Report, Failure> {
         let models = session
             .builder
-            .models(system, |p| session.bar.build(p))
+            .models(scene, |p| session.bar.build(p))
             .map_err(|error| self.modes.refusal(error.into()))?;
-        let systems = system_modes::system_modes(system, &models, self.time, self.about)?;
+        let systems = system_modes::system_modes(scene, &models, self.time, self.about)?;
         let mut pictures = Vec::new();
         if let Some(folder) = &self.output {
             make_folder(folder)?;
@@ -124,17 +124,17 @@ impl Modes {
                 let stem = folder.join(name);
                 let fields = stem.with_extension("vtkhdf");
                 let all: Vec<PathBuf> = figures::files(&stem).into_iter().chain([fields.clone()]).collect();
-                outputs_of_system(system, &session.builder, self.files.overwrite).claim(&all)?;
-                pictures.extend(system_modes::draw(system, &models, modes, &stem)?.into_iter().flatten());
-                if system_modes::write_fields(system, &models, modes, &fields, self.files.overwrite)? {
+                outputs_of_scene(scene, &session.builder, self.files.overwrite).claim(&all)?;
+                pictures.extend(system_modes::draw(scene, &models, modes, &stem)?.into_iter().flatten());
+                if system_modes::write_fields(scene, &models, modes, &fields, self.files.overwrite)? {
                     pictures.push(fields);
                 }
             }
         }
         let is_tied = |number: usize| systems.iter().any(|(modes, _)| modes.bodies.contains(&number));
         let mut bodies = Vec::new();
-        for (_, scene) in system.bodies.iter().enumerate().filter(|(number, _)| !is_tied(*number)) {
-            bodies.push((scene.name.clone(), self.of_body(scene, session)?.1));
+        for (_, body) in scene.bodies.iter().enumerate().filter(|(number, _)| !is_tied(*number)) {
+            bodies.push((body.name.clone(), self.of_body(body, session)?.1));
         }
         let mut report = Report::default();
         report.files = pictures;
@@ -149,9 +149,9 @@ fn make_folder(folder: &Path) -> Result<(), run::RunError> {
 }
 
 /// Refuses a time of a run that bodies which nothing ties do not need, and one after its end.
-fn check_time(system: &System, time: f64) -> Result<(), CliError> {
-    let end = system.bodies.iter().map(|scene| scene.time.end).fold(0.0, f64::max);
-    let (found, expected, help) = if !system.has_connections() {
+fn check_time(scene: &Scene, time: f64) -> Result<(), CliError> {
+    let end = scene.bodies.iter().map(|body| body.time.end).fold(0.0, f64::max);
+    let (found, expected, help) = if !scene.has_connections() {
         let help = "leave it out: a body alone has the same modes wherever it is";
         ("a scene of bodies that nothing ties together".to_owned(), "joints, springs or bushings".to_owned(), help)
     } else if time > end {

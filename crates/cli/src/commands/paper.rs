@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use diagnostic::Failure;
-use flexframe::outputs::outputs_of_scene;
+use flexframe::outputs::outputs_of_body;
 use flexframe::paper;
 use flexframe::run::RunSettings;
 
@@ -31,7 +31,7 @@ impl Paper {
         let scene = session.read(scene)?;
         let settings = RunSettings { check: true, ..session.settings(files.overwrite) };
         let folder = folder(&scene, output)?;
-        outputs_of_scene(&scene, &session.builder, files.overwrite).claim(&paper::files(&folder))?;
+        outputs_of_body(&scene, &session.builder, files.overwrite).claim(&paper::files(&folder))?;
         let report = paper::reproduce(&scene, &folder, &settings, |p| {
             session.signals.heard(p);
             session.bar.run(p);

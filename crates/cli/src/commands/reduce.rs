@@ -6,7 +6,7 @@ use clap::Args;
 use diagnostic::Failure;
 use flexframe::hand_over::{self, Form};
 use flexframe::modes;
-use flexframe::outputs::{Written, outputs_of_scene};
+use flexframe::outputs::{Written, outputs_of_body};
 
 use crate::arguments::{FileArgs, SceneArgs};
 use crate::output;
@@ -44,7 +44,7 @@ impl Reduce {
         }
         let form = Form::of(&output);
         let written = form.map_or(Written::BODY, Form::written);
-        outputs_of_scene(&scene, &session.builder, files.overwrite).claim_as(&written, &output)?;
+        outputs_of_body(&scene, &session.builder, files.overwrite).claim_as(&written, &output)?;
         let progress = |p| session.bar.build(p);
         let mut report = match form {
             Some(form) => hand_over::hand_over(&scene, &session.builder, form, &output, progress)?,

@@ -38,13 +38,13 @@ impl Run {
     pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, output, files, large, no_check, solver } = self;
         output::require_file("--output", output.as_deref())?;
-        let system = session.read_system(scene)?;
-        if let Some(to) = solver.take_of(&system.bodies, &mut session.builder, session.signals.slepc())? {
-            return session.write_only(system.only_body()?, &to, files.overwrite);
+        let scene = session.read_scene(scene)?;
+        if let Some(to) = solver.take_of(&scene.bodies, &mut session.builder, session.signals.slepc())? {
+            return session.write_only(scene.only_body()?, &to, files.overwrite);
         }
-        let folder = folder(&system, output)?;
+        let folder = folder(&scene, output)?;
         let settings = RunSettings { large, check: !no_check, ..session.settings(files.overwrite) };
-        let (_, report) = run::run(&system, &folder, &settings, |p| {
+        let (_, report) = run::run(&scene, &folder, &settings, |p| {
             session.signals.heard(p);
             session.bar.run(p);
         })?;

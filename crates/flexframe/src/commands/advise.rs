@@ -7,7 +7,7 @@ use std::fmt;
 use advice::{Row, StrainError, Subject};
 use dynamics::Setup;
 use model::{BuildProgress, Builder, Model, Needs};
-use scene::{Method, Scene};
+use scene::{Body, Method};
 use serde::{Serialize, Serializer};
 
 use crate::commands::modes::frequency_unit;
@@ -124,31 +124,31 @@ pub enum AdviseProgress {
 /// # Errors
 /// [`RunError`] of the scene as it is. A run with an effect switched that fails is a row that says so.
 pub fn advise(
-    scene: &Scene,
+    body: &Body,
     builder: &Builder,
     verify: bool,
     mut progress: impl FnMut(AdviseProgress),
 ) -> Result<AdviseReport, RunError> {
-    let of_paper = !scene.method().abilities.switches_effects;
+    let of_paper = !body.method().abilities.switches_effects;
     let needs = &Needs { method: of_paper.then_some(Method::EXPONENTIAL), ..Needs::without_rows() };
-    let assembly = builder.needing(needs.clone()).assemble(scene, |p| progress(AdviseProgress::Build(p)))?;
+    let assembly = builder.needing(needs.clone()).assemble(body, |p| progress(AdviseProgress::Build(p)))?;
     let mut variants = assembly.variants()?;
-    let model = variants.build(scene, needs, |p| progress(AdviseProgress::Build(p)))?;
-    let step = step_row(scene, needs, &model);
+    let model = variants.build(body, needs, |p| progress(AdviseProgress::Build(p)))?;
+    let step = step_row(body, needs, &model);
     let rows = model.advice.rows().chain([(Subject::Step, &step)]).map(|(subject, row)| EffectRow {
         subject,
         formula: subject.formula(),
         value: row.value,
         influence: row.influence,
         advised: row.on,
-        on: is_on(scene, &model, subject),
+        on: is_on(body, &model, subject),
         why: row.why.clone(),
         real: None,
     });
     let mut report = AdviseReport {
-        title: scene.title.clone(),
-        frequency_unit: frequency_unit(&scene.units.time),
-        tolerance: scene.effects.tolerance,
+        title: body.title.clone(),
+        frequency_unit: frequency_unit(&body.units.time),
+        tolerance: body.effects.tolerance,
         of_paper,
         rows: rows.collect(),
         modes: (model.advice.modes.iter().enumerate())
@@ -167,7 +167,7 @@ pub fn advise(
     if verify {
         let total = report.rows.iter().filter(|row| row.on.is_some()).count() as u64 + 1;
         progress(AdviseProgress::Verifying { done: 0, total });
-        let mut base = verify::Base::new(scene, needs, &model, &mut variants)?;
+        let mut base = verify::Base::new(body, needs, &model, &mut variants)?;
         for (i, row) in report.rows.iter_mut().filter(|row| row.on.is_some()).enumerate() {
             progress(AdviseProgress::Verifying { done: i as u64 + 1, total });
             row.real = Some(base.influence(row.subject));
@@ -177,10 +177,10 @@ pub fn advise(
 }
 
 /// Error of the steps; that of a step that no run can start with is infinite.
-fn step_row(scene: &Scene, needs: &Needs, model: &Model) -> Row {
-    let (tolerance, initial) = (scene.effects.tolerance, model.initial(scene));
-    let method = needs.method_of(scene);
-    match advice::step_estimate(&Setup { method: model.paper.or(&method), ..model.setup(scene, &initial) }) {
+fn step_row(body: &Body, needs: &Needs, model: &Model) -> Row {
+    let (tolerance, initial) = (body.effects.tolerance, model.initial(body));
+    let method = needs.method_of(body);
+    match advice::step_estimate(&Setup { method: model.paper.or(&method), ..model.setup(body, &initial) }) {
         Ok(Some(estimate)) => estimate.row(tolerance),
         Ok(None) => {
             let why = "The step follows from the tolerance.".into();

@@ -20,7 +20,7 @@ use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{Effect, SpinMode, SteadySpin};
 use model::{BuildError, BuildProgress, Builder, Needs};
 use nalgebra::Vector3;
-use scene::Scene;
+use scene::Body;
 
 pub use bent::AboutRest;
 pub use report::FILES;
@@ -109,7 +109,7 @@ fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, Failure> {
 /// A body whose spin is held, about its undeformed shape.
 struct Undeformed<'a> {
     spin: &'a SteadySpin,
-    scene: &'a Scene,
+    scene: &'a Body,
 }
 
 impl Family for Undeformed<'_> {
@@ -130,7 +130,7 @@ impl Family for Undeformed<'_> {
 /// # Errors
 /// [`Failure`].
 pub fn campbell(
-    scene: &Scene,
+    body: &Body,
     builder: &Builder,
     settings: &CampbellSettings,
     mut progress: impl FnMut(CampbellProgress),
@@ -139,8 +139,8 @@ pub fn campbell(
     let speeds = checked(settings.speeds, &settings.orders)?;
     // The rest at each speed is found here.
     let builder = builder.needing(Needs::spin());
-    let model = builder.build(scene, |p| progress(CampbellProgress::Build(p)))?;
-    require_flexible(scene, &model).map_err(BuildError::from)?;
+    let model = builder.build(body, |p| progress(CampbellProgress::Build(p)))?;
+    require_flexible(body, &model).map_err(BuildError::from)?;
 
     let effects = &model.physics.effects;
     let effects = SpinEffects {
@@ -152,7 +152,7 @@ pub fn campbell(
         let found =
             "an effect of the spin that is off, `coriolis`, `deformed_inertia` or `geometric_stiffening` in [effects]";
         let expected = "all of them with `--about-rest always`, since the full body has them";
-        let wrong = Kind::Usage.of(&scene.path).found(found).expected(expected);
+        let wrong = Kind::Usage.of(&body.path).found(found).expected(expected);
         return Err(wrong.help("leave them on, or give `--about-rest never`").into());
     }
     let spin = SteadySpin::new(&model.body, &axis, &model.physics.effects);
@@ -163,20 +163,20 @@ pub fn campbell(
     let may_be_bent = match settings.about_rest {
         AboutRest::Never => false,
         AboutRest::Always => true,
-        AboutRest::Auto => effects.all() && scene.body.bends_far() && deflection().is_some(),
+        AboutRest::Auto => effects.all() && body.source.bends_far() && deflection().is_some(),
     };
-    let no_rest = scene.body.not_by_elements().map(|found| match deflection() {
+    let no_rest = body.source.not_by_elements().map(|found| match deflection() {
         None => format!("not found of {found}"),
         Some(part) => format!("not found of {found}, which the highest speed bends by about {part:.1e} of its length"),
     });
-    let full = may_be_bent.then(|| bent::full(scene, &builder)).transpose()?;
-    let bent = full.as_ref().map(|full| BentSpin::new(scene, full, &model, &axis)).transpose()?;
+    let full = may_be_bent.then(|| bent::full(body, &builder)).transpose()?;
+    let bent = full.as_ref().map(|full| BentSpin::new(body, full, &model, &axis)).transpose()?;
     let bent = match bent {
         Some(bent) if settings.about_rest == AboutRest::Always || bent.differs(&spin, highest)? => Some(bent),
         _ => None,
     };
     let (family, static_shapes): (&dyn Family, _) = match &bent {
-        None => (&Undeformed { spin: &spin, scene }, model.static_shapes()),
+        None => (&Undeformed { spin: &spin, scene: body }, model.static_shapes()),
         Some(bent) => (bent, 0),
     };
     let diagram = diagram::diagram(family, static_shapes, speeds, &settings.orders, done)?;
@@ -189,5 +189,5 @@ pub fn campbell(
         deflection: bent.iter().flat_map(|bent| diagram.speeds.iter().map(|speed| bent.deflection(*speed))).collect(),
         ..diagram
     };
-    Ok(diagram.report(&scene.title, [&scene.units.length, &scene.units.time], &settings.orders))
+    Ok(diagram.report(&body.title, [&body.units.length, &body.units.time], &settings.orders))
 }

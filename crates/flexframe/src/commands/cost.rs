@@ -24,7 +24,7 @@ use advice::Subject;
 use diagnostic::{Diagnostic, Failure};
 use dynamics::{Method, SystemScheme};
 use model::{BuildError, BuildProgress, Builder, ModeCount, Model, Needs};
-use scene::{METHODS, Scene, System};
+use scene::{Body, METHODS, Scene};
 
 pub use answer::Answer;
 pub use body::CostBody;
@@ -68,18 +68,18 @@ pub enum CostProgress {
 /// # Errors
 /// [`Failure`]. A run that fails is a row that says so.
 pub fn price_list(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     folder: &Path,
     settings: CostSettings,
     mut progress: impl FnMut(CostProgress),
 ) -> Result<CostReport, Failure> {
     let builder = &builder.needing(Needs::without_rows());
-    let built = system.bodies.iter().map(|scene| Built::new(scene, builder, |p| progress(CostProgress::Build(p))));
+    let built = scene.bodies.iter().map(|given| Built::new(given, builder, |p| progress(CostProgress::Build(p))));
     let built = built.collect::<Result<Vec<_>, _>>()?;
-    let case = PreparedScene::new(system.clone(), built.iter().map(|built| &built.model).collect());
+    let case = PreparedScene::new(scene.clone(), built.iter().map(|built| &built.model).collect());
 
-    let is_tied = system.has_ties();
+    let is_tied = scene.has_ties();
     let methods: &[Method] = if is_tied { &Method::OF_JOINTS } else { &METHODS };
     let ladders: Vec<(Method, bool)> = methods
         .iter()
@@ -97,7 +97,7 @@ pub fn price_list(
     let reference = converge(&case, finest, settings.budget(20), 0.0).map_err(|(steps, source)| {
         let words =
             format!("no reference can be made: a run of {steps} steps of the exponential scheme failed: {source}");
-        let known = source.diagnosis().in_file(&system.path);
+        let known = source.diagnosis().in_file(&scene.path);
         known.help("make the run shorter, or give more time with --patience").says(words)
     })?;
     step(1);
@@ -110,7 +110,7 @@ pub fn price_list(
     };
     step(1);
     let evaluator = Evaluator { reference: &reference, paper_limit: paper_limit.as_ref(), settings };
-    let own = (*system.method(), system.time.control);
+    let own = (*scene.method(), scene.time.control);
     let mut lines = Vec::new();
     for (method, controlled) in ladders {
         lines.push(refine_line(&case, &evaluator, method, controlled, own));
@@ -128,15 +128,15 @@ pub fn price_list(
     let bodies: Vec<CostBody> = case.bodies().zip(&built).map(of_body).collect();
 
     let mut report = CostReport {
-        title: system.title.clone(),
-        scene: system.path.clone(),
-        time_unit: system.units.time.clone(),
+        title: scene.title.clone(),
+        scene: scene.path.clone(),
+        time_unit: scene.units.time.clone(),
         machine: Machine::this(),
-        end: system.time.end,
+        end: scene.time.end,
         reference: reference.report(),
         paper_limit: paper_limit.as_ref().map(|limit| limit.report_against(&reference, case.scales())),
         paper_limit_failure,
-        answer: settings.target.map(|target| Answer::new(target, system.rows, &lines, &bodies)),
+        answer: settings.target.map(|target| Answer::new(target, scene.rows, &lines, &bodies)),
         lines,
         bodies,
         files: Vec::new(),
@@ -154,16 +154,16 @@ struct Built {
 }
 
 impl Built {
-    fn new(scene: &Scene, builder: &Builder, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
-        let assembly = builder.assemble(scene, &mut progress)?;
+    fn new(body: &Body, builder: &Builder, mut progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+        let assembly = builder.assemble(body, &mut progress)?;
         let mut variants = assembly.variants()?;
-        let model = variants.build(scene, &builder.needs, &mut progress)?;
-        let settled = settled(&builder.needs, scene, &model, Some((Subject::StaticCorrection, false)));
+        let model = variants.build(body, &builder.needs, &mut progress)?;
+        let settled = settled(&builder.needs, body, &model, Some((Subject::StaticCorrection, false)));
         let mut with_modes = Vec::new();
-        let counts = if scene.tied { Vec::new() } else { modes::counts(Self::flexible(&model), variants.available()?) };
+        let counts = if body.tied { Vec::new() } else { modes::counts(Self::flexible(&model), variants.available()?) };
         for count in counts.into_iter().rev() {
             let needs = Needs { flexible: Some(ModeCount::Count(count)), ..settled.clone() };
-            with_modes.insert(0, variants.build(scene, &needs, &mut progress)?);
+            with_modes.insert(0, variants.build(body, &needs, &mut progress)?);
         }
         Ok(Self { model, with_modes })
     }
@@ -173,7 +173,7 @@ impl Built {
     }
 
     fn report(&self, body: RunBody<'_>, settings: &CostSettings) -> CostBody {
-        let compared = (!body.scene.tied).then(|| modes::compare(body.scene, &self.with_modes, settings));
+        let compared = (!body.body.tied).then(|| modes::compare(body.body, &self.with_modes, settings));
         let (modes, modes_failure) = match compared {
             None => (Vec::new(), Some(TIED_MODES.to_owned())),
             Some(Ok(modes)) => (modes, None),
@@ -183,7 +183,7 @@ impl Built {
             name: body.name().to_owned(),
             flexible: Self::flexible(&self.model),
             highest_frequency: self.model.natural_frequencies().into_iter().reduce(f64::max),
-            initial_spin: nalgebra::Vector3::from(body.scene.initial.angular_velocity).norm(),
+            initial_spin: nalgebra::Vector3::from(body.body.initial.angular_velocity).norm(),
             points: self.model.points.len(),
             modes,
             modes_failure,

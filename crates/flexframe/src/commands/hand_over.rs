@@ -15,7 +15,7 @@ use std::path::Path;
 use diagnostic::Failure;
 use model::{BuildProgress, Builder, Model};
 use report::Report;
-use scene::Scene;
+use scene::Body;
 use whole_file::{Written, write_whole};
 
 use craig_bampton::matrices;
@@ -70,31 +70,31 @@ impl Form {
 /// # Errors
 /// [`Failure`].
 pub fn hand_over(
-    scene: &Scene,
+    body: &Body,
     builder: &Builder,
     form: Form,
     path: &Path,
     progress: impl FnMut(BuildProgress),
 ) -> Result<Report, Failure> {
-    let model = builder.build(scene, progress)?;
-    let notes = write(scene, &model, form, path)?;
-    let mut report = modes::report(scene, &model, None);
+    let model = builder.build(body, progress)?;
+    let notes = write(body, &model, form, path)?;
+    let mut report = modes::report(body, &model, None);
     report.warnings.extend(notes);
     Ok(report)
 }
 
 /// Writes the file, where its form holds what the body is about. Notes where its coordinates are others than markers ask for, and where turns
 /// are not known.
-fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<Vec<String>, Failure> {
+fn write(given: &Body, model: &Model, form: Form, path: &Path) -> Result<Vec<String>, Failure> {
     let is_bent = model.meshed.as_ref().is_some_and(|meshed| meshed.reference.is_some());
     if is_bent && matches!(form, Form::Mbdyn | Form::Flex42 | Form::Sid) {
         let found = "modes about a bent rest, whose internal forces this form does not hold: its loads would bend the body a second time";
         let help = "remove `about`; the matrices of .op4 and .op2 are those of vibrations about the rest";
-        return Err(scene.refuse("modes.about", found, "modes about the undeformed body", help).into());
+        return Err(given.refuse("modes.about", found, "modes about the undeformed body", help).into());
     }
     let mut of_turns = None;
     let mut body = || {
-        let body = Reduced::new(scene, model)?;
+        let body = Reduced::new(given, model)?;
         of_turns = without_turns(&body.nodes_without_turns);
         Ok::<_, Failure>(body)
     };
@@ -105,7 +105,7 @@ fn write(scene: &Scene, model: &Model, form: Form, path: &Path) -> Result<Vec<St
         matrices
     };
     let bytes = match form {
-        Form::Gltf => gltf::bytes(scene, model)?,
+        Form::Gltf => gltf::bytes(given, model)?,
         Form::Op4 => op4::text(&named(&body()?)).into_bytes(),
         Form::Op2 => op2::bytes(&named(&body()?)),
         Form::Mbdyn => mbdyn::text(&body()?).into_bytes(),

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use model::{BuildError, BuildProgress, Builder, Model, Needs};
 use report::{Form, Report, Table, Value};
-use scene::{Scene, Units};
+use scene::{Body, Units};
 
 use crate::plausible;
 pub(crate) use carried::Carried;
@@ -23,10 +23,10 @@ use crate::report::{BodyReport, MeshReport, Times, size_and_mass};
 
 /// The report of a model: its mesh, its mass and its modes, with the errors of their frequencies that the mesh makes, and the time that
 /// these took.
-pub(crate) fn report(scene: &Scene, model: &Model, errors: Option<(&[f64], Duration)>) -> Report {
-    let (unit, mesh, body) = (frequency_unit(&scene.units.time), MeshReport::new(model), BodyReport::new(model));
-    let Units { length, mass, time } = &scene.units;
-    let mut report = Report::new(&scene.title);
+pub(crate) fn report(given: &Body, model: &Model, errors: Option<(&[f64], Duration)>) -> Report {
+    let (unit, mesh, body) = (frequency_unit(&given.units.time), MeshReport::new(model), BodyReport::new(model));
+    let Units { length, mass, time } = &given.units;
+    let mut report = Report::new(&given.title);
     report.put("units", [length, mass, time]);
     report.put("frequency_unit", &unit);
     report.put("mesh", mesh.as_ref().map(Value::of));
@@ -42,7 +42,7 @@ pub(crate) fn report(scene: &Scene, model: &Model, errors: Option<(&[f64], Durat
     errors.into_iter().for_each(|(_, time)| times.add("mesh error", time));
     report.put("times", Value::of(&times));
     report.line("time", times.to_string());
-    report.warnings = plausible::doubts(scene, model);
+    report.warnings = plausible::doubts(given, model);
     let frequencies = &body.natural_frequencies;
     if frequencies.is_empty() {
         report.line(
@@ -88,7 +88,7 @@ pub(crate) fn table_of_modes(
 /// # Errors
 /// [`BuildError`].
 pub fn reduce(
-    scene: &Scene,
+    body: &Body,
     builder: &Builder,
     output: &Path,
     matrices: bool,
@@ -96,8 +96,8 @@ pub fn reduce(
     progress: impl FnMut(BuildProgress),
 ) -> Result<Report, BuildError> {
     let builder = builder.needing(Needs { stress_field: stress, ..Needs::default() });
-    let model = builder.write_body(scene, output, matrices, progress)?;
-    Ok(report(scene, &model, None))
+    let model = builder.write_body(body, output, matrices, progress)?;
+    Ok(report(body, &model, None))
 }
 
 /// Finds the modes of a scene's body, and what each carries: rotations of the base are `about` a point in the frame of the mesh, or
@@ -106,20 +106,20 @@ pub fn reduce(
 /// # Errors
 /// [`BuildError`].
 pub fn modes(
-    scene: &Scene,
+    body: &Body,
     builder: &Builder,
     about: Option<[f64; 3]>,
     progress: impl FnMut(BuildProgress),
 ) -> Result<(Model, Report), BuildError> {
-    let model = builder.needing(Needs::modes()).build(scene, progress)?;
+    let model = builder.needing(Needs::modes()).build(body, progress)?;
     let Some(meshed) = model.meshed.as_ref().filter(|_| model.body.flexible() > 0) else {
-        let report = report(scene, &model, None);
+        let report = report(body, &model, None);
         return Ok((model, report));
     };
     let start = Instant::now();
     let energy = StrainEnergy::new(meshed)?;
     let errors = energy.as_ref().map(|energy| (&energy.mesh_errors[..], start.elapsed()));
-    let mut report = report(scene, &model, errors);
+    let mut report = report(body, &model, errors);
     Carried::of_body(&model, about).add_to(&mut report);
     energy.iter().for_each(|energy| energy.add_to(&mut report));
     Ok((model, report))
@@ -130,13 +130,13 @@ pub fn modes(
 /// # Errors
 /// [`BuildError`].
 pub fn write_problem(
-    scene: &Scene,
+    body: &Body,
     builder: &Builder,
     folder: &Path,
     ranks: usize,
     progress: impl FnMut(BuildProgress),
 ) -> Result<Vec<PathBuf>, BuildError> {
-    builder.assemble(scene, progress)?.variants()?.write_problem(scene, folder, ranks)
+    builder.assemble(body, progress)?.variants()?.write_problem(body, folder, ranks)
 }
 
 /// "Hz" where time is in seconds.

@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use diagnostic::{Failure, Kind};
 use results::Results;
-use scene::Scene;
+use scene::Body;
 use serde::Serialize;
 use whole_file::write_whole;
 
@@ -53,24 +53,24 @@ pub fn files(folder: &Path) -> Vec<PathBuf> {
 /// # Errors
 /// [`Failure`].
 pub fn reproduce(
-    scene: &Scene,
+    body: &Body,
     folder: &Path,
     settings: &RunSettings,
     progress: impl FnMut(RunProgress),
 ) -> Result<PaperReport, Failure> {
     let only_plates = || {
         let words = "the paper has a free body with a mesh under dead half-sine forces";
-        Kind::Input.of(&scene.path).help("use `flexframe run` for others").says(words)
+        Kind::Input.of(&body.path).help("use `flexframe run` for others").says(words)
     };
-    if !scene.body.bends_far() {
+    if !body.source.bends_far() {
         return Err(only_plates());
     }
-    if !scene.output.points.contains_key(WATCHED_POINT) {
+    if !body.output.points.contains_key(WATCHED_POINT) {
         let help = "add it under [output.points], as in examples/plate.toml";
         let words = format!("the paper's figures need the output point {WATCHED_POINT}");
-        return Err(Kind::Input.of(&scene.path).help(help).says(words));
+        return Err(Kind::Input.of(&body.path).help(help).says(words));
     }
-    let (models, mut run) = run(&scene.clone().into(), folder, settings, progress)?;
+    let (models, mut run) = run(&body.clone().into(), folder, settings, progress)?;
     let ([model], [of_plate]) = (&models[..], &run.bodies[..]) else { return Err(only_plates()) };
     let started = Instant::now();
     let results = Results::open(&run.results, &COLUMNS)?;
@@ -80,10 +80,10 @@ pub fn reproduce(
     let lumped = fem_tet10::centroid_lumped_inertia(&meshed.mesh, &elements.materials, &elements.point_masses)
         .map_err(model::BuildError::from)?;
     let comparison = Comparison::new(of_plate, &results, &rigid, &lumped);
-    let figures = figures::draw(scene, model, &results, &rigid, folder)?;
+    let figures = figures::draw(body, model, &results, &rigid, folder)?;
     run.times.add("figures", started.elapsed());
     let path = folder.join(PAGE);
-    write_whole(&path, page::page(scene, &run, &comparison)).map_err(WriteError::of(&path))?;
+    write_whole(&path, page::page(body, &run, &comparison)).map_err(WriteError::of(&path))?;
     Ok(PaperReport { run, report: path, figures, comparison })
 }
 

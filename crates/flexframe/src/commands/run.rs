@@ -24,7 +24,7 @@ use std::time::Instant;
 use dynamics::{Initial, Run};
 use model::{BuildError, Model};
 use results::{Expected, Results, Resumed, Writer, unfinished};
-use scene::{Scene, SceneError, System};
+use scene::{Body, Scene, SceneError};
 
 pub use balances::Balances;
 pub(crate) use balances::Monitor;
@@ -34,7 +34,7 @@ pub use error::{RunError, RunFailure};
 pub use estimate::Estimate;
 pub use large_choice::LargeChoice;
 pub(crate) use metadata::units;
-pub use metadata::{metadata, metadata_of_system};
+pub use metadata::{metadata, metadata_of_scene};
 pub use report::{RunReport, SystemReport, TableInUse};
 pub use settings::{RunProgress, RunSettings};
 pub use tied_report::{AssembledReport, HeldReport, StepLimitReport, TiedReport};
@@ -44,7 +44,7 @@ use crate::commands::check::checked_rows::check_run;
 use crate::commands::check::rows::CheckRows;
 use crate::drawn::{stored_bytes, stored_shapes};
 use crate::files::identity::{contents, identity_of_files};
-use crate::files::outputs::outputs_of_system;
+use crate::files::outputs::outputs_of_scene;
 pub use crate::files::results_path::results_path;
 use crate::files::scene_file;
 use crate::motion::{StartSettings, begin};
@@ -64,24 +64,24 @@ use recorder::{Recorder, checkpoint};
 /// # Errors
 /// [`RunError`]. When a step fails, the unfinished file keeps the rows before it.
 pub fn run(
-    system: &System,
+    scene: &Scene,
     folder: &Path,
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<(Vec<Model>, RunReport), RunError> {
-    check_files(system, folder, settings)?;
-    let models = settings.builder.models(system, |p| progress(RunProgress::Build(p)))?;
+    check_files(scene, folder, settings)?;
+    let models = settings.builder.models(scene, |p| progress(RunProgress::Build(p)))?;
     // Who is to stop may do so here, before there is an unfinished file: the last phase of the build may have been long.
     progress(RunProgress::Built);
-    let report = run_models(system, &models, folder, settings, &mut progress)?;
-    let chosen = report.large_choice.as_ref().and_then(|choice| choice.taken(system, report.steps));
+    let report = run_models(scene, &models, folder, settings, &mut progress)?;
+    let chosen = report.large_choice.as_ref().and_then(|choice| choice.taken(scene, report.steps));
     let Some(chosen) = chosen else { return Ok((models, report)) };
     again(&chosen, (models, report), folder, settings, progress)
 }
 
 /// Runs a system once more with the large modes that the check of the first run has found better. The first stands where this cannot be done.
 fn again(
-    system: &System,
+    scene: &Scene,
     (models, first): (Vec<Model>, RunReport),
     folder: &Path,
     settings: &RunSettings,
@@ -90,9 +90,9 @@ fn again(
     let over = RunSettings { overwrite: true, ..settings.clone() };
     let second = settings
         .builder
-        .models(system, |p| progress(RunProgress::Build(p)))
+        .models(scene, |p| progress(RunProgress::Build(p)))
         .map_err(RunError::from)
-        .and_then(|models| Ok((run_models(system, &models, folder, &over, progress)?, models)));
+        .and_then(|models| Ok((run_models(scene, &models, folder, &over, progress)?, models)));
     match second {
         Ok((mut report, models)) => {
             report.times.add_all(&first.times);
@@ -111,28 +111,28 @@ fn again(
 /// Checks the worst rows of each body by the full body, as many as cost no more than the reduction did, if the run is to be checked; states
 /// how far its answer can be trusted; and puts the results into their place.
 fn conclude(
-    system: &System,
+    scene: &Scene,
     models: &[Model],
     settings: &RunSettings,
     (mut report, mut writer): (RunReport, Writer<Row>),
     mut progress: impl FnMut(RunProgress),
 ) -> Result<RunReport, RunError> {
-    report.tables = TableInUse::all(system);
-    report.warnings.extend(plausible::struck_drives(system));
+    report.tables = TableInUse::all(scene);
+    report.warnings.extend(plausible::struck_drives(scene));
     let file = report.results.file_name().unwrap_or_default().to_string_lossy().into_owned();
     if !settings.rows_alone {
         let started = Instant::now();
         let results = writer.results()?;
         let checked = settings.check.then(|| {
             let (path, builder, rows) = (&report.results, &settings.builder, CheckRows::Cheap);
-            check_run(path, &results, system, models, builder, &rows, |p| progress(RunProgress::Check(p)))
+            check_run(path, &results, scene, models, builder, &rows, |p| progress(RunProgress::Check(p)))
         });
         if let Some(Ok(checked)) = &checked {
-            match LargeChoice::better(&report.results, &results, (system, models), &settings.builder, checked) {
+            match LargeChoice::better(&report.results, &results, (scene, models), &settings.builder, checked) {
                 Ok(better) => report.large_choice = better,
                 Err(error) => report.warnings.push(format!("other large modes could not be checked: {error}")),
             }
-            report.warnings.extend(LargeChoice::not_tried((system, models), checked));
+            report.warnings.extend(LargeChoice::not_tried((scene, models), checked));
         }
         if settings.check {
             report.times.add("check", started.elapsed());
@@ -152,7 +152,7 @@ fn conclude(
         };
         let check = report.check.as_ref().ok_or(not_checked);
         let cure = report.large_choice.as_ref().map(LargeChoice::cure);
-        let card = trust::of_run((system, models), &results, &report.bodies, check, cure.as_deref(), &file);
+        let card = trust::of_run((scene, models), &results, &report.bodies, check, cure.as_deref(), &file);
         writer.trust(card.lines.clone());
         report.trust = Some(card);
         report.times.add("trust", started.elapsed());
@@ -165,9 +165,9 @@ fn conclude(
 }
 
 /// Refuses a run that could not write its files.
-fn check_files(system: &System, folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
-    let path = results_path(system, folder);
-    let outputs = outputs_of_system(system, &settings.builder, settings.overwrite);
+fn check_files(scene: &Scene, folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
+    let path = results_path(scene, folder);
+    let outputs = outputs_of_scene(scene, &settings.builder, settings.overwrite);
     outputs.spare(&path)?;
     outputs.spare(&unfinished(&path))?;
     std::fs::create_dir_all(folder).map_err(|source| RunError::Folder { folder: folder.to_owned(), source })?;
@@ -175,8 +175,8 @@ fn check_files(system: &System, folder: &Path, settings: &RunSettings) -> Result
 }
 
 /// The bodies of scenes and their models.
-pub(crate) fn bodies<'a>(scenes: &'a [Scene], models: &'a [Model]) -> Vec<RunBody<'a>> {
-    scenes.iter().zip(models).map(|(scene, model)| RunBody { scene, model }).collect()
+pub(crate) fn bodies<'a>(scenes: &'a [Body], models: &'a [Model]) -> Vec<RunBody<'a>> {
+    scenes.iter().zip(models).map(|(body, model)| RunBody { body, model }).collect()
 }
 
 /// The same of models that are there already, one for each body.
@@ -184,24 +184,24 @@ pub(crate) fn bodies<'a>(scenes: &'a [Scene], models: &'a [Model]) -> Vec<RunBod
 /// # Errors
 /// As [`run`].
 pub fn run_models(
-    system: &System,
+    scene: &Scene,
     models: &[Model],
     folder: &Path,
     settings: &RunSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<RunReport, RunError> {
-    let bodies = bodies(&system.bodies, models);
-    let path = results_path(system, folder);
+    let bodies = bodies(&scene.bodies, models);
+    let path = results_path(scene, folder);
     let started = Instant::now();
     let initial = initial(&bodies);
-    let run = begin_run(system, models)?;
-    let identity = identity(system, settings);
+    let run = begin_run(scene, models)?;
+    let identity = identity(scene, settings);
     let checkpoint = checkpoint(identity, &run, &path)?.len();
-    let metadata = metadata_of_file(system, &bodies, &settings.builder);
+    let metadata = metadata_of_file(scene, &bodies, &settings.builder);
     let of_shapes = if settings.rows_alone { 0 } else { stored_bytes(&bodies) };
-    let estimate = Estimate::of_rows(system, &metadata, of_shapes);
+    let estimate = Estimate::of_rows(scene, &metadata, of_shapes);
     if estimate.bytes > LARGE && !settings.large {
-        return Err(RunError::Large { scene: system.path.clone(), estimate });
+        return Err(RunError::Large { scene: scene.path.clone(), estimate });
     }
     let estimate = estimate.with_seconds(&run, &settings.stop);
     progress(RunProgress::Estimate(estimate));
@@ -214,8 +214,8 @@ pub fn run_models(
     let followed = followed(&bodies, &initial)?;
     let mut recorder = Recorder::new(run, followed, writer, estimate, identity);
     recorder.begin()?;
-    let followed = recorder.follow(system, started, settings, &mut progress)?;
-    conclude(system, models, settings, followed, progress)
+    let followed = recorder.follow(scene, started, settings, &mut progress)?;
+    conclude(scene, models, settings, followed, progress)
 }
 
 /// Goes on with a run that was cut off, from the last checkpoint in its unfinished file (which may be given by the name
@@ -232,15 +232,15 @@ pub fn resume(
     let Resumed { writer, results, checkpoint: state } = Writer::resume(file, &COLUMNS, settings.overwrite)?;
     let part = writer.unfinished().to_path_buf();
     let changed = |what| RunError::Changed { part: part.clone(), what };
-    let system = system_of(&results)?.ok_or_else(|| changed("the list of bodies"))?;
-    outputs_of_system(&system, &settings.builder, settings.overwrite).spare(writer.path())?;
-    let models = settings.builder.models(&system, |p| progress(RunProgress::Build(p)))?;
+    let scene = system_of(&results)?.ok_or_else(|| changed("the list of bodies"))?;
+    outputs_of_scene(&scene, &settings.builder, settings.overwrite).spare(writer.path())?;
+    let models = settings.builder.models(&scene, |p| progress(RunProgress::Build(p)))?;
     progress(RunProgress::Built);
-    let bodies = bodies(&system.bodies, &models);
+    let bodies = bodies(&scene.bodies, &models);
     let of_shapes = if settings.rows_alone { 0 } else { stored_bytes(&bodies) };
-    let estimate = Estimate::of_rows(&system, &results.metadata, of_shapes);
+    let estimate = Estimate::of_rows(&scene, &results.metadata, of_shapes);
     let started = Instant::now();
-    let now = metadata_of_file(&system, &bodies, &settings.builder);
+    let now = metadata_of_file(&scene, &bodies, &settings.builder);
     if now.program_version != results.metadata.program_version {
         return Err(changed("the version of flexframe"));
     }
@@ -252,9 +252,9 @@ pub fn resume(
         return Err(changed("a joint"));
     }
     let initial = initial(&bodies);
-    let mut run = begin_run(&system, &models)?;
+    let mut run = begin_run(&scene, &models)?;
     progress(RunProgress::Motion(0.0));
-    let identity = identity(&system, settings);
+    let identity = identity(&scene, settings);
     if let Some(state) = state.as_deref() {
         let (then, state) = state.split_first().ok_or_else(|| changed("the motion at the checkpoint"))?;
         run = run.restored(state).map_err(|source| RunError::Restore { part: part.clone(), source })?;
@@ -268,34 +268,34 @@ pub fn resume(
         Some(_) => recorder.take_up(&results)?,
         None => recorder.begin()?,
     }
-    let followed = recorder.follow(&system, started, settings, &mut progress)?;
-    conclude(&system, &models, settings, followed, progress)
+    let followed = recorder.follow(&scene, started, settings, &mut progress)?;
+    conclude(&scene, &models, settings, followed, progress)
 }
 
 /// The number of the files that a run reads; none for the rows of a sweep, which do not go on.
-fn identity(system: &System, settings: &RunSettings) -> u64 {
-    if settings.rows_alone { 0 } else { identity_of_files(system, |scene| contents(&scene.body)) }
+fn identity(scene: &Scene, settings: &RunSettings) -> u64 {
+    if settings.rows_alone { 0 } else { identity_of_files(scene, |body| contents(&body.source)) }
 }
 
 /// The system of a run, with the bodies that the run has; `None` where one of them is not there.
-pub(crate) fn system_of(results: &Results) -> Result<Option<System>, SceneError> {
+pub(crate) fn system_of(results: &Results) -> Result<Option<Scene>, SceneError> {
     let metadata = &results.metadata;
-    let system = System::parse(&metadata.scene_text, scene_file::to_path(&metadata.scene_file))?;
-    let are_all = system.bodies.len() == metadata.bodies.len()
-        && system.bodies.iter().zip(&metadata.bodies).all(|(scene, body)| body::name(scene) == body.name);
-    if are_all || system.has_ties() {
-        return Ok(are_all.then_some(system));
+    let scene = Scene::parse(&metadata.scene_text, scene_file::to_path(&metadata.scene_file))?;
+    let are_all = scene.bodies.len() == metadata.bodies.len()
+        && scene.bodies.iter().zip(&metadata.bodies).all(|(given, body)| body::name(given) == body.name);
+    if are_all || scene.has_ties() {
+        return Ok(are_all.then_some(scene));
     }
-    let scene_of = |name: &str| system.bodies.iter().find(|scene| body::name(scene) == name);
-    let bodies: Option<Vec<Scene>> = metadata.bodies.iter().map(|body| scene_of(&body.name).cloned()).collect();
-    Ok(bodies.map(|bodies| System { bodies, ..system.clone() }))
+    let scene_of = |name: &str| scene.bodies.iter().find(|given| body::name(given) == name);
+    let bodies: Option<Vec<Body>> = metadata.bodies.iter().map(|body| scene_of(&body.name).cloned()).collect();
+    Ok(bodies.map(|bodies| Scene { bodies, ..scene.clone() }))
 }
 
 /// The run of a system from its start.
-fn begin_run(system: &System, models: &[Model]) -> Result<Run, RunError> {
+fn begin_run(scene: &Scene, models: &[Model]) -> Result<Run, RunError> {
     let models: Vec<&Model> = models.iter().collect();
-    let beginning = StartSettings::of(system, &models);
-    Ok(begin(system, &models, &beginning).map_err(|error| error.at_key(system))?)
+    let beginning = StartSettings::of(scene, &models);
+    Ok(begin(scene, &models, &beginning).map_err(|error| error.at_key(scene))?)
 }
 
 fn followed<'a>(bodies: &[RunBody<'a>], initial: &'a [Initial]) -> Result<Vec<FollowedBody<'a>>, RunError> {
@@ -308,5 +308,5 @@ fn followed<'a>(bodies: &[RunBody<'a>], initial: &'a [Initial]) -> Result<Vec<Fo
 }
 
 fn initial(bodies: &[RunBody<'_>]) -> Vec<Initial> {
-    bodies.iter().map(|RunBody { scene, model }| model.initial(scene)).collect()
+    bodies.iter().map(|RunBody { body, model }| model.initial(body)).collect()
 }

@@ -20,7 +20,7 @@ use diagnostic::{Failure, Kind};
 use keys::Hash;
 use model::{Assembly, BuildError, BuildProgress, Builder, Model, Needs, Variants};
 use results::{ColumnTable, Results};
-use scene::{Body, Scene, System};
+use scene::{Body, BodySource, Scene};
 use serde::Serialize;
 use whole_file::{FileLock, TemporaryFolder, cure_of_temporaries};
 
@@ -179,7 +179,7 @@ pub fn sweep(
             _ if table.rows[i] != RowState::Open || !is_mine(i) => {}
             Ok(system) => {
                 let made_of: Vec<String> =
-                    system.bodies.iter().map(|scene| Assembly::made_of(scene, &builder.needs)).collect();
+                    system.bodies.iter().map(|body| Assembly::made_of(body, &builder.needs)).collect();
                 groups.entry(made_of.join("\n")).or_default().push(i);
             }
             Err(words) => table.rows[i] = RowState::Failed(words.clone()),
@@ -192,7 +192,7 @@ pub fn sweep(
         let mut all_failed =
             |words: &str| rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(words.to_owned()));
         let assemblies: Result<Vec<_>, _> =
-            first.bodies.iter().map(|scene| builder.assemble(scene, |p| progress(SweepProgress::Build(p)))).collect();
+            first.bodies.iter().map(|body| builder.assemble(body, |p| progress(SweepProgress::Build(p)))).collect();
         let assemblies = match assemblies {
             Ok(assemblies) => assemblies,
             Err(error) => {
@@ -310,12 +310,12 @@ const CHANGED: &str = "a file of the body was changed while the sweep ran\n = ru
 /// Files that a sweep may not write over: all that it reads.
 fn outputs(plan: &Plan, sweep: &Path, builder: &Builder, overwrite: bool) -> Outputs {
     // Rows with the same bodies and tables have the same files.
-    let same = |system: &System| {
-        let bodies: Vec<&Body> = system.bodies.iter().map(|scene| &scene.body).collect();
-        (system.files(), format!("{bodies:?}"))
+    let same = |scene: &Scene| {
+        let bodies: Vec<&BodySource> = scene.bodies.iter().map(|body| &body.source).collect();
+        (scene.files(), format!("{bodies:?}"))
     };
-    let systems: BTreeMap<_, &System> = plan.rows.iter().flatten().map(|system| (same(system), system)).collect();
-    let files = systems.into_values().flat_map(|system| builder.files(system));
+    let systems: BTreeMap<_, &Scene> = plan.rows.iter().flatten().map(|scene| (same(scene), scene)).collect();
+    let files = systems.into_values().flat_map(|scene| builder.files(scene));
     Outputs::new(std::iter::once(sweep.to_owned()).chain(files).collect(), overwrite)
 }
 
@@ -363,35 +363,35 @@ fn run_rows(
 
 /// The results of a row, or why there are none.
 fn run_row(
-    system: &System,
+    scene: &Scene,
     plan: &Plan,
     variants: &[Mutex<Variants<'_>>],
     folder: &Path,
     settings: &RunSettings,
 ) -> Result<Done, String> {
-    let build = |scene: &Scene, needs: &Needs, variants: &Mutex<Variants<'_>>| -> Result<Model, String> {
+    let build = |given: &Body, needs: &Needs, variants: &Mutex<Variants<'_>>| -> Result<Model, String> {
         let mut variants = variants.lock().unwrap_or_else(PoisonError::into_inner);
-        variants.build(scene, needs, |_| ()).map_err(|error| cured(&error, error.to_string()))
+        variants.build(given, needs, |_| ()).map_err(|error| cured(&error, error.to_string()))
     };
     let [asks_run, asks_frequencies] = plan.asks();
     let mut done = Done { results: Vec::new(), warnings: Vec::new() };
     let mut frequencies: BTreeMap<Option<&str>, Vec<f64>> = BTreeMap::new();
     if asks_frequencies {
-        for (scene, variants) in system.bodies.iter().zip(variants).filter(|(scene, _)| plan.asks_frequencies_of(scene))
+        for (given, variants) in scene.bodies.iter().zip(variants).filter(|(given, _)| plan.asks_frequencies_of(given))
         {
-            let model = build(scene, &Needs::modes(), variants)?;
-            modes::require_flexible(scene, &model).map_err(|error| error.to_string())?;
-            frequencies.insert(scene.name.as_deref(), model.natural_frequencies());
-            done.warnings.extend(plausible::doubts(scene, &model));
+            let model = build(given, &Needs::modes(), variants)?;
+            modes::require_flexible(given, &model).map_err(|error| error.to_string())?;
+            frequencies.insert(given.name.as_deref(), model.natural_frequencies());
+            done.warnings.extend(plausible::doubts(given, &model));
         }
     }
     let folder = TemporaryFolder::inside(folder).map_err(|error| cured(&error, error.to_string()))?;
     let mut results = None;
     if asks_run {
         let models =
-            system.bodies.iter().zip(variants).map(|(scene, variants)| build(scene, &Needs::default(), variants));
+            scene.bodies.iter().zip(variants).map(|(given, variants)| build(given, &Needs::default(), variants));
         let models = models.collect::<Result<Vec<_>, _>>()?;
-        let run = run::run_models(system, &models, folder.path(), settings, |_| ());
+        let run = run::run_models(scene, &models, folder.path(), settings, |_| ());
         let run = run.map_err(|error| cured(&error, error.without_files()))?;
         done.warnings = run.warnings;
         results = Some(Results::open(run.results, &COLUMNS).map_err(|error| error.to_string())?);

@@ -13,7 +13,7 @@ use diagnostic::{Diagnostic, Failure};
 use dynamics::{CommonSpin, SteadyError, SteadyState};
 use model::{BuildProgress, Builder, Model};
 use nalgebra::Vector3;
-use scene::System;
+use scene::Scene;
 
 use crate::commands::modes::Carried;
 pub use advice::{AdviceOnSystems, SystemAdvice};
@@ -35,35 +35,35 @@ pub use stiffening::{StiffenedBody, StiffenedFrequency};
 /// # Errors
 /// [`Failure`].
 pub fn system_modes(
-    system: &System,
+    scene: &Scene,
     models: &[Model],
     time: Option<f64>,
     about: Option<[f64; 3]>,
 ) -> Result<Vec<(SystemModes, Report)>, Failure> {
     let of_system = |motion: &TiedMotion| {
-        let (modes, steady) = of_motion(system, motion)?;
+        let (modes, steady) = of_motion(scene, motion)?;
         let found = steady.participation(motion.run.motion(), about.map(Vector3::from));
-        let found = found.map_err(|source| failed(system, source))?;
+        let found = found.map_err(|source| failed(scene, source))?;
         let unit = &modes.report.frequency_unit;
         let report = modes.report.report(found.map(|found| Carried::of_system(found, about.is_some(), unit)));
         Ok((modes, report))
     };
-    motions_at(system, models, time)?.iter().map(of_system).collect()
+    motions_at(scene, models, time)?.iter().map(of_system).collect()
 }
 
 /// The vibrations of a scene as [`system_modes`] has them, without what they carry: for pictures.
 ///
 /// # Errors
 /// [`Failure`].
-pub(crate) fn vibrations(system: &System, models: &[Model]) -> Result<Vec<SystemModes>, Failure> {
-    let of_system = |motion: &TiedMotion| of_motion(system, motion).map(|(modes, _)| modes);
-    motions_at(system, models, None)?.iter().map(of_system).collect()
+pub(crate) fn vibrations(scene: &Scene, models: &[Model]) -> Result<Vec<SystemModes>, Failure> {
+    let of_system = |motion: &TiedMotion| of_motion(scene, motion).map(|(modes, _)| modes);
+    motions_at(scene, models, None)?.iter().map(of_system).collect()
 }
 
-fn motions_at(system: &System, models: &[Model], time: Option<f64>) -> Result<Vec<TiedMotion>, Failure> {
+fn motions_at(scene: &Scene, models: &[Model], time: Option<f64>) -> Result<Vec<TiedMotion>, Failure> {
     match time {
-        Some(time) if time > 0.0 => tied_motions_at(system, models, time),
-        _ => tied_motions(system, models),
+        Some(time) if time > 0.0 => tied_motions_at(scene, models, time),
+        _ => tied_motions(scene, models),
     }
 }
 
@@ -72,35 +72,35 @@ fn motions_at(system: &System, models: &[Model], time: Option<f64>) -> Result<Ve
 /// # Errors
 /// [`Failure`].
 pub fn system_advice(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     progress: impl FnMut(BuildProgress),
 ) -> Result<Vec<SystemAdvice>, Failure> {
-    let models = builder.models(system, progress)?;
+    let models = builder.models(scene, progress)?;
     let of_system = |motion: &TiedMotion| {
-        let (modes, _) = of_motion(system, motion)?;
+        let (modes, _) = of_motion(scene, motion)?;
         let flexible = motion.bodies.iter().copied().filter(|body| models[*body].body.flexible() > 0);
-        let flexible = body_names(system, &flexible.collect::<Vec<_>>());
+        let flexible = body_names(scene, &flexible.collect::<Vec<_>>());
         let advice = SystemAdvice::new(&modes.report, &flexible);
         Ok(advice.with_stiffening(
-            stiffening::stiffened(system, &models, motion),
-            &system.units,
+            stiffening::stiffened(scene, &models, motion),
+            &scene.units,
             &modes.report.frequency_unit,
         ))
     };
-    tied_motions(system, &models)?.iter().map(of_system).collect()
+    tied_motions(scene, &models)?.iter().map(of_system).collect()
 }
 
-fn of_motion(system: &System, motion: &TiedMotion) -> Result<(SystemModes, SteadyState), Failure> {
-    let failed = |source| failed(system, source);
+fn of_motion(scene: &Scene, motion: &TiedMotion) -> Result<(SystemModes, SteadyState), Failure> {
+    let failed = |source| failed(scene, source);
     let of_motion = motion.run.motion();
     let rotors = Rotors::of(of_motion, |_| false);
     let steady = rotors.steady_state(of_motion, &CommonSpin::REST).map_err(failed)?;
     let vibrations = steady.linear.vibrations().map_err(failed)?;
-    let report = SystemModesReport::new(system, motion, &steady, &vibrations, rotors);
+    let report = SystemModesReport::new(scene, motion, &steady, &vibrations, rotors);
     Ok((SystemModes { bodies: motion.bodies.clone(), states: steady.states(), vibrations, report }, steady))
 }
 
-fn failed(system: &System, source: SteadyError) -> Failure {
-    source.in_file(&system.path)
+fn failed(scene: &Scene, source: SteadyError) -> Failure {
+    source.in_file(&scene.path)
 }

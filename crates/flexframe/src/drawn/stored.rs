@@ -4,7 +4,7 @@ use fem_tet10::AssemblyError;
 use memory::Bytes;
 use model::Model;
 use results::{MeshProperties, Shapes};
-use scene::{Body, Scene};
+use scene::{Body, BodySource};
 
 use super::hash;
 use super::of_model::{surface, surface_shapes_of};
@@ -39,29 +39,29 @@ fn share(bodies: usize) -> u64 {
 }
 
 /// The finite-element model of a body, in the words of a results file.
-pub(crate) fn mesh_properties(scene: &Scene, model: &Model) -> Option<MeshProperties> {
+pub(crate) fn mesh_properties(body: &Body, model: &Model) -> Option<MeshProperties> {
     let meshed = model.meshed.as_ref()?;
     let mesh = &meshed.mesh;
-    let (body_file, shapes_hash) = match &scene.body {
-        Body::Meshed(_) | Body::File(_) => (body_file(scene), hash::of_model(meshed)),
+    let (body_file, shapes_hash) = match &body.source {
+        BodySource::Meshed(_) | BodySource::File(_) => (body_file(body), hash::of_model(meshed)),
         // No body file is made of these.
-        Body::Matrices(_) | Body::Rigid(_) => (String::new(), String::new()),
+        BodySource::Matrices(_) | BodySource::Rigid(_) => (String::new(), String::new()),
     };
     let (nodes, elements) = (mesh.positions().len(), mesh.elements().len());
     Some(MeshProperties { nodes, elements, size: mesh.size(), body_file, shapes_hash })
 }
 
 /// A warning where the results file of a run does not carry the shapes.
-pub(crate) fn not_stored(RunBody { scene, model }: RunBody<'_>, bodies: usize) -> Option<String> {
+pub(crate) fn not_stored(RunBody { body, model }: RunBody<'_>, bodies: usize) -> Option<String> {
     let (bytes, limit) = (bytes(model), share(bodies));
-    (scene.body.has_elements() && bytes > limit).then(|| {
+    (body.source.has_elements() && bytes > limit).then(|| {
         let [bytes, limit] = [bytes, limit].map(|bytes| Bytes(usize::try_from(bytes).unwrap_or(usize::MAX)));
         format!(
             "the shapes on the surface take {bytes}, and a results file carries {limit} of them at the most: report, animate and \
              export --vtkhdf, --vtu and --modes will read them from the body file {}{}",
-            body_file(scene),
-            match scene.body {
-                Body::File(_) => "",
+            body_file(body),
+            match body.source {
+                BodySource::File(_) => "",
                 _ => " beside the results file, which `flexframe reduce SCENE --stress -o FILE` makes",
             }
         )
@@ -69,10 +69,10 @@ pub(crate) fn not_stored(RunBody { scene, model }: RunBody<'_>, bodies: usize) -
 }
 
 /// The body file with the shapes on all nodes: that of the scene, or one beside the results file.
-fn body_file(scene: &Scene) -> String {
-    match &scene.body {
-        Body::File(body) => scene_file::to_text(&body.file),
-        _ => body_file_name(scene).to_string_lossy().into_owned(),
+fn body_file(body: &Body) -> String {
+    match &body.source {
+        BodySource::File(given) => scene_file::to_text(&given.file),
+        _ => body_file_name(body).to_string_lossy().into_owned(),
     }
 }
 

@@ -2,27 +2,27 @@
 
 use keys::{Digest, Hash, Key};
 use model::files_of_body;
-use scene::{Body, Scene, System};
+use scene::{Body, BodySource, Scene};
 
 /// A number for what the files hold that a system names: all tables as they were read, and the files that the bodies are read from,
 /// whose hash `contents_of` knows. The names of the files do not count: a run goes on from another folder.
-pub fn identity_of_files(system: &System, contents_of: impl FnMut(&Scene) -> Hash) -> u64 {
-    number(with_files(Key::new().of("files", 1), system, contents_of))
+pub fn identity_of_files(scene: &Scene, contents_of: impl FnMut(&Body) -> Hash) -> u64 {
+    number(with_files(Key::new().of("files", 1), scene, contents_of))
 }
 
 /// The same with the texts of the scenes.
-pub fn identity_of_row(system: &System, contents_of: impl FnMut(&Scene) -> Hash) -> u64 {
+pub fn identity_of_row(scene: &Scene, contents_of: impl FnMut(&Body) -> Hash) -> u64 {
     let key = Key::new().of("row", 2);
-    let key = system.bodies.iter().fold(key, |key, scene| key.with("scene", scene.source.as_str()));
-    number(with_files(key, system, contents_of))
+    let key = scene.bodies.iter().fold(key, |key, body| key.with("scene", body.text_alone.as_str()));
+    number(with_files(key, scene, contents_of))
 }
 
-fn with_files(key: Key, system: &System, contents_of: impl FnMut(&Scene) -> Hash) -> Key {
-    let key = system.tables().fold(key, |key, table| key.with("table", table.points.as_flattened()));
-    let measured = system.bodies.iter().filter_map(|scene| scene.modes.measured.as_ref());
+fn with_files(key: Key, scene: &Scene, contents_of: impl FnMut(&Body) -> Hash) -> Key {
+    let key = scene.tables().fold(key, |key, table| key.with("table", table.points.as_flattened()));
+    let measured = scene.bodies.iter().filter_map(|body| body.modes.measured.as_ref());
     let measured = measured.map(|measured| format!("{:?} {:?}", measured.places, measured.modes));
     let key = measured.fold(key, |key, measured| key.with("measured", measured.as_str()));
-    system.bodies.iter().map(contents_of).fold(key, |key, contents| key.with("body", &contents))
+    scene.bodies.iter().map(contents_of).fold(key, |key, contents| key.with("body", &contents))
 }
 
 fn number(key: Key) -> u64 {
@@ -32,8 +32,8 @@ fn number(key: Key) -> u64 {
 }
 
 /// Hash of the files of a body.
-pub fn contents(body: &Body) -> Hash {
-    let files = files_of_body(body);
+pub fn contents(source: &BodySource) -> Hash {
+    let files = files_of_body(source);
     let digest = files.iter().fold(Digest::new(), |digest, path| {
         // What is no ordinary file can be read only once; what cannot be read fails where it is read.
         let hash = Some(path).filter(|path| path.is_file()).and_then(|path| Hash::of_file(path).ok());

@@ -5,20 +5,20 @@ use std::path::Path;
 use mesh_import::files_of_mesh;
 use model::Builder;
 use results::Results;
-use scene::{Scene, System};
+use scene::{Body, Scene};
 pub use whole_file::{OutputError, Outputs, Written};
 
 use crate::drawn::body_files;
 use crate::files::scene_file;
 
 /// Files that a command may write that builds a scene.
-pub fn outputs_of_scene(scene: &Scene, builder: &Builder, overwrite: bool) -> Outputs {
-    outputs_of_system(&scene.clone().into(), builder, overwrite)
+pub fn outputs_of_body(body: &Body, builder: &Builder, overwrite: bool) -> Outputs {
+    outputs_of_scene(&body.clone().into(), builder, overwrite)
 }
 
 /// The same of one that builds the bodies and joints of a scene.
-pub fn outputs_of_system(system: &System, builder: &Builder, overwrite: bool) -> Outputs {
-    Outputs::new(builder.files(system), overwrite)
+pub fn outputs_of_scene(scene: &Scene, builder: &Builder, overwrite: bool) -> Outputs {
+    Outputs::new(builder.files(scene), overwrite)
 }
 
 /// The same of one that reads a mesh or geometry.

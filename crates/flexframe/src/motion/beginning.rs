@@ -8,7 +8,7 @@ use dynamics::{
     PointShapes, RowTimes, Rows, Run, RunDescription, Setup, SetupError, SharedLoad, Simulation, StepControl,
 };
 use model::{BuildError, Model, StartError, Tied, physics_in_system, tie_models};
-use scene::{End, Scene, System};
+use scene::{Body, End, Scene};
 
 /// Forces on a body, and the damping and effects that they call for.
 #[derive(Debug, Clone)]
@@ -80,22 +80,22 @@ pub struct StartSettings {
 
 impl StartSettings {
     /// Beginning of a scene with a model of each body.
-    pub fn of(system: &System, models: &[&Model]) -> Self {
+    pub fn of(scene: &Scene, models: &[&Model]) -> Self {
         let forces = |model: &&Model| BodyForces {
             loads: model.loads().to_vec(),
             damping_ratios: model.damping_ratios().to_vec(),
             physics: model.physics.clone(),
         };
         Self {
-            method: system.time.method,
-            control: system.time.control,
-            end: system.time.end,
-            rows: system.rows,
+            method: scene.time.method,
+            control: scene.time.control,
+            end: scene.time.end,
+            rows: scene.rows,
             bodies: models.iter().map(forces).collect(),
             laws: Vec::new(),
             equations: Vec::new(),
             marker_laws: Vec::new(),
-            relaxed: system.relaxed,
+            relaxed: scene.relaxed,
             together: false,
         }
     }
@@ -110,18 +110,18 @@ impl StartSettings {
 ///
 /// # Errors
 /// [`BuildError`], or the scene of a body whose motion cannot start, and why.
-pub fn begin(system: &System, models: &[&Model], beginning: &StartSettings) -> Result<Run, BeginError> {
+pub fn begin(scene: &Scene, models: &[&Model], beginning: &StartSettings) -> Result<Run, BeginError> {
     let mut islands = Vec::new();
-    let tied = tied(system, models, beginning)?;
-    for (number, (scene, model)) in system.bodies.iter().zip(models).enumerate() {
+    let tied = tied(scene, models, beginning)?;
+    for (number, (body, model)) in scene.bodies.iter().zip(models).enumerate() {
         if tied.iter().all(|tied| !tied.bodies.contains(&number)) {
-            let alone = alone(scene, model, &beginning.bodies[number], beginning);
-            let motion = alone.map_err(|source| BeginError::start(number, scene, source))?;
+            let alone = alone(body, model, &beginning.bodies[number], beginning);
+            let motion = alone.map_err(|source| BeginError::start(number, body, source))?;
             islands.push(Island { motion, bodies: vec![number], joints: Vec::new(), elements: Vec::new() });
         }
     }
     for tied in tied {
-        islands.push(begin_island(system, models, tied, beginning)?);
+        islands.push(begin_island(scene, models, tied, beginning)?);
     }
     Ok(Run::new(islands, beginning.row_times()))
 }
@@ -131,35 +131,30 @@ pub fn begin(system: &System, models: &[&Model], beginning: &StartSettings) -> R
 /// # Errors
 /// As [`begin`].
 pub(crate) fn begin_tied(
-    system: &System,
+    scene: &Scene,
     models: &[&Model],
     beginning: &StartSettings,
 ) -> Result<Vec<Island>, BeginError> {
-    let tied = tied(system, models, beginning)?;
-    tied.into_iter().map(|tied| begin_island(system, models, tied, beginning)).collect()
+    let tied = tied(scene, models, beginning)?;
+    tied.into_iter().map(|tied| begin_island(scene, models, tied, beginning)).collect()
 }
 
-fn begin_island(
-    system: &System,
-    models: &[&Model],
-    tied: Tied,
-    beginning: &StartSettings,
-) -> Result<Island, BeginError> {
-    let (bodies, joints, elements) = (tied.bodies.clone(), tied.joints.clone(), elements_in_rows(system, &tied));
-    let motion = run_of_system(system, models, tied, beginning).begin().map_err(StartError::from);
+fn begin_island(scene: &Scene, models: &[&Model], tied: Tied, beginning: &StartSettings) -> Result<Island, BeginError> {
+    let (bodies, joints, elements) = (tied.bodies.clone(), tied.joints.clone(), elements_in_rows(scene, &tied));
+    let motion = run_of_system(scene, models, tied, beginning).begin().map_err(StartError::from);
     let motion = motion.map_err(|source| {
         // At the body that is meant, where it is one.
         let number = bodies[source.body_of_system().unwrap_or(0)];
-        BeginError::start(number, &system.bodies[number], source)
+        BeginError::start(number, &scene.bodies[number], source)
     })?;
     Ok(Island { motion, bodies, joints, elements })
 }
 
 /// Numbers in rows of the springs and bushings of a system, in its order; laws from outside come after them.
-fn elements_in_rows(system: &System, tied: &Tied) -> Vec<usize> {
-    let springs = system.springs.iter().map(|spring| &spring.name);
-    let names = springs.chain(system.bushings.iter().map(|bushing| &bushing.name));
-    let of_system = (system.joints.len()..).zip(names).filter(|(_, name)| tied.elements.contains(name));
+fn elements_in_rows(scene: &Scene, tied: &Tied) -> Vec<usize> {
+    let springs = scene.springs.iter().map(|spring| &spring.name);
+    let names = springs.chain(scene.bushings.iter().map(|bushing| &bushing.name));
+    let of_system = (scene.joints.len()..).zip(names).filter(|(_, name)| tied.elements.contains(name));
     of_system.map(|(number, _)| number).collect()
 }
 
@@ -167,9 +162,9 @@ fn elements_in_rows(system: &System, tied: &Tied) -> Vec<usize> {
 ///
 /// # Errors
 /// [`BuildError`], also for laws and equations at joints and markers that are not there.
-pub(super) fn tied(system: &System, models: &[&Model], beginning: &StartSettings) -> Result<Vec<Tied>, BuildError> {
+pub(super) fn tied(scene: &Scene, models: &[&Model], beginning: &StartSettings) -> Result<Vec<Tied>, BuildError> {
     let StartSettings { laws, equations, marker_laws, together, .. } = beginning;
-    let all = tie_models(system, models, *together || !marker_laws.is_empty())?;
+    let all = tie_models(scene, models, *together || !marker_laws.is_empty())?;
     let mut named = laws.iter().map(|law| law.joint).chain(equations.iter().map(|own| own.joint));
     if let Some(joint) = named.find(|joint| all.iter().all(|tied| !tied.joints.contains(joint))) {
         let what = "the number of the joint of a law or an equation";
@@ -190,7 +185,7 @@ pub(super) fn tied(system: &System, models: &[&Model], beginning: &StartSettings
         }
         let mut elements = tied.system.elements().to_vec();
         for MarkerForces { name, between, law } in marker_laws {
-            let markers = tied.markers(system, models, *between)?;
+            let markers = tied.markers(scene, models, *between)?;
             elements.push(Arc::new(MarkerForce { markers, law: Arc::clone(law) }) as Arc<dyn ForceElement>);
             tied.elements.push(name.clone());
         }
@@ -218,16 +213,16 @@ pub enum BeginError {
 }
 
 impl BeginError {
-    fn start(body: usize, scene: &Scene, source: StartError) -> Self {
-        Self::Start { body, scene: scene.path.clone(), source: Box::new(source) }
+    fn start(body: usize, of: &Body, source: StartError) -> Self {
+        Self::Start { body, scene: of.path.clone(), source: Box::new(source) }
     }
 
     /// At the key of the scene, where that names the step.
     #[must_use]
-    pub fn at_key(self, system: &System) -> Self {
+    pub fn at_key(self, of: &Scene) -> Self {
         match self {
             Self::Start { body, scene, source } => {
-                Self::Start { body, scene, source: Box::new(source.at_key(&system.bodies[body])) }
+                Self::Start { body, scene, source: Box::new(source.at_key(&of.bodies[body])) }
             }
             Self::Build(_) => self,
         }
@@ -238,12 +233,12 @@ fn points(model: &Model) -> Vec<PointShapes> {
     model.points.iter().map(|(_, point)| point.clone()).collect()
 }
 
-fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &StartSettings) -> Result<Simulation, StartError> {
-    StartError::refuse_tied(scene)?;
-    if let Some(refusal) = model.refusal.filter(|_| scene.effects.refuse) {
+fn alone(body: &Body, model: &Model, forces: &BodyForces, of: &StartSettings) -> Result<Simulation, StartError> {
+    StartError::refuse_tied(body)?;
+    if let Some(refusal) = model.refusal.filter(|_| body.effects.refuse) {
         return Err(refusal.into());
     }
-    let (initial, points, method) = (model.initial(scene), points(model), of.method.without_joints());
+    let (initial, points, method) = (model.initial(body), points(model), of.method.without_joints());
     Ok(Simulation::new(&Setup {
         damping_ratios: &forces.damping_ratios,
         loads: &forces.loads,
@@ -253,14 +248,14 @@ fn alone(scene: &Scene, model: &Model, forces: &BodyForces, of: &StartSettings) 
         end: of.end,
         rows: of.rows,
         points: &points,
-        ..model.setup(scene, &initial)
+        ..model.setup(body, &initial)
     })?)
 }
 
 /// A body with what acts on it.
-fn described_body(scene: &Scene, model: &Model, forces: &BodyForces) -> DescribedBody {
+fn described_body(body: &Body, model: &Model, forces: &BodyForces) -> DescribedBody {
     DescribedBody {
-        name: scene.name.as_deref().map(Into::into),
+        name: body.name.as_deref().map(Into::into),
         body: model.body.clone(),
         damping_ratios: forces.damping_ratios.clone(),
         loads: forces.loads.clone(),
@@ -270,13 +265,13 @@ fn described_body(scene: &Scene, model: &Model, forces: &BodyForces) -> Describe
 }
 
 /// The run of a body that nothing ties, as data have it: all but the reference points of the paper's formulation.
-pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of: &StartSettings) -> RunDescription {
+pub(super) fn run_of_body(body: &Body, model: &Model, forces: &BodyForces, of: &StartSettings) -> RunDescription {
     RunDescription {
-        bodies: vec![described_body(scene, model, forces)],
+        bodies: vec![described_body(body, model, forces)],
         joints: Vec::new(),
         couplings: Vec::new(),
         elements: Vec::new(),
-        states: vec![model.initial(scene).state(&model.body)],
+        states: vec![model.initial(body).state(&model.body)],
         relaxed: false,
         method: *of.method.without_joints(),
         control: of.control,
@@ -286,13 +281,13 @@ pub(super) fn run_of_body(scene: &Scene, model: &Model, forces: &BodyForces, of:
 }
 
 /// The run of tied bodies.
-pub(super) fn run_of_system(system: &System, models: &[&Model], tied: Tied, of: &StartSettings) -> RunDescription {
+pub(super) fn run_of_system(scene: &Scene, models: &[&Model], tied: Tied, of: &StartSettings) -> RunDescription {
     RunDescription {
         bodies: {
             let described = |number: &usize| {
-                let (scene, forces) = (&system.bodies[*number], &of.bodies[*number]);
-                let physics = physics_in_system(scene, &forces.physics);
-                DescribedBody { physics, ..described_body(scene, models[*number], forces) }
+                let (body, forces) = (&scene.bodies[*number], &of.bodies[*number]);
+                let physics = physics_in_system(body, &forces.physics);
+                DescribedBody { physics, ..described_body(body, models[*number], forces) }
             };
             tied.bodies.iter().map(described).collect()
         },

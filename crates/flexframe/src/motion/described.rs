@@ -2,7 +2,7 @@
 
 use live::{LiveMotion, LiveRun};
 use model::{BuildError, Model};
-use scene::System;
+use scene::Scene;
 
 use super::beginning::{StartSettings, run_of_body, run_of_system, tied};
 
@@ -14,11 +14,11 @@ pub(crate) struct Described {
 }
 
 /// All that the motions of [`begin`](super::begin) begin with: there is a model of each body.
-pub(crate) fn describe(system: &System, models: &[&Model], beginning: &StartSettings) -> Result<Described, BuildError> {
-    let tied = tied(system, models, beginning)?;
+pub(crate) fn describe(scene: &Scene, models: &[&Model], beginning: &StartSettings) -> Result<Described, BuildError> {
+    let tied = tied(scene, models, beginning)?;
     let is_alone = |number: &usize| tied.iter().all(|tied| !tied.bodies.contains(number));
     let alone = (0..models.len()).filter(is_alone).map(|number| {
-        let run = run_of_body(&system.bodies[number], models[number], &beginning.bodies[number], beginning);
+        let run = run_of_body(&scene.bodies[number], models[number], &beginning.bodies[number], beginning);
         LiveMotion { run, bodies: vec![number] }
     });
     let mut motions: Vec<LiveMotion> = alone.collect();
@@ -26,7 +26,7 @@ pub(crate) fn describe(system: &System, models: &[&Model], beginning: &StartSett
     for tied in tied {
         elements.push(tied.elements.clone());
         let bodies = tied.bodies.clone();
-        let run = run_of_system(system, models, tied, beginning);
+        let run = run_of_system(scene, models, tied, beginning);
         motions.push(LiveMotion { run, bodies });
     }
     Ok(Described { run: LiveRun { motions }, elements })

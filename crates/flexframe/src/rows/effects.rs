@@ -4,28 +4,28 @@ use advice::Subject;
 use dynamics::{DrivenMotion, Effect};
 use model::Model;
 use results::EffectProperties;
-use scene::{Load, Scene};
+use scene::{Body, Load};
 
 use crate::report::quantity;
 
 /// The effects and static shapes that can be on or off in a run of the conservative form, and whether they are; none for
 /// the paper's formulation, which has its own.
-pub(crate) fn computed(scene: &Scene, model: &Model) -> Vec<(&'static str, bool)> {
-    if !scene.method().abilities.switches_effects {
+pub(crate) fn computed(body: &Body, model: &Model) -> Vec<(&'static str, bool)> {
+    if !body.method().abilities.switches_effects {
         return Vec::new();
     }
     let subjects = model.advice.rows().map(|(subject, _)| subject);
-    subjects.filter_map(|subject| Some((subject.name(), is_on(scene, model, subject)?))).collect()
+    subjects.filter_map(|subject| Some((subject.name(), is_on(body, model, subject)?))).collect()
 }
 
 /// All effects of the conservative form in words, as a page about the run shows them; none for the paper's formulation.
-pub(crate) fn described(scene: &Scene, model: &Model) -> Vec<EffectProperties> {
-    if !scene.method().abilities.switches_effects {
+pub(crate) fn described(body: &Body, model: &Model) -> Vec<EffectProperties> {
+    if !body.method().abilities.switches_effects {
         return Vec::new();
     }
     let effect = |(subject, row): (Subject, &advice::Row)| EffectProperties {
         name: subject.name().replace('_', " "),
-        state: match is_on(scene, model, subject) {
+        state: match is_on(body, model, subject) {
             Some(true) => "on",
             Some(false) => "off",
             None => "–",
@@ -44,7 +44,7 @@ pub(crate) fn is_switch(subject: Subject) -> bool {
 
 /// True if a model has the subject of a row; `None` where that cannot be switched, or the scene has nothing that it could
 /// act on.
-pub(crate) fn is_on(scene: &Scene, model: &Model, subject: Subject) -> Option<bool> {
+pub(crate) fn is_on(body: &Body, model: &Model, subject: Subject) -> Option<bool> {
     let flexible = model.body.flexible();
     match subject {
         Subject::Effect(effect) => {
@@ -53,10 +53,10 @@ pub(crate) fn is_on(scene: &Scene, model: &Model, subject: Subject) -> Option<bo
             let can_act = match effect {
                 Effect::Flexibility => true,
                 Effect::Damping => {
-                    let damped = |k: usize| scene.modes.damping.ratio(k, model.body.circular_frequencies[k]) > 0.0;
+                    let damped = |k: usize| body.modes.damping.ratio(k, model.body.circular_frequencies[k]) > 0.0;
                     (0..flexible).any(damped)
                 }
-                Effect::Gravity => scene.loads.iter().any(Load::is_gravity),
+                Effect::Gravity => body.loads.iter().any(Load::is_gravity),
                 Effect::DeformedInertia | Effect::Coriolis | Effect::GeometricStiffening | Effect::LargeDeflection => {
                     flexible > 0
                 }

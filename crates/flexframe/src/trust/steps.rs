@@ -1,27 +1,27 @@
 //! The error of the steps, from their bound or their estimate and from the balance of energy.
 
-use scene::{Scene, StepControl};
+use scene::{Body, StepControl};
 
 use super::card::{Line, Place, SMALL, percent};
 use crate::commands::run::body_report::BodyRunReport;
 
 /// The line of a body.
-pub(super) fn line(scene: &Scene, report: &BodyRunReport, scene_file: &str) -> Line {
+pub(super) fn line(body: &Body, report: &BodyRunReport, scene_file: &str) -> Line {
     let measured = format!("`flexframe cost {scene_file}` measures it");
-    let expected = match (scene.time.control, report.step_error) {
+    let expected = match (body.time.control, report.step_error) {
         // Jumps that nothing tells may take more.
         (StepControl::Tolerance(tolerance), Some(sum)) if sum > tolerance => {
             Some((sum, "the estimates of all steps together, more than `tolerance`"))
         }
         (StepControl::Tolerance(tolerance), _) => Some((tolerance, "bounded by `tolerance`")),
         // The estimate is that of the body alone.
-        (StepControl::Fixed(_), error) if !scene.tied => {
+        (StepControl::Fixed(_), error) if !body.tied => {
             error.map(|error| (error, "estimated from steps several times shorter"))
         }
         (StepControl::Fixed(_), _) => None,
     };
     let open = report.energy_tells.then_some(report.balances.energy);
-    let shorter = match scene.time.control {
+    let shorter = match body.time.control {
         StepControl::Tolerance(_) => "a smaller `tolerance`",
         StepControl::Fixed(_) => "a shorter `step`, or `tolerance` in its place",
     };
@@ -34,15 +34,15 @@ pub(super) fn line(scene: &Scene, report: &BodyRunReport, scene_file: &str) -> L
             percent(forgotten)
         );
     }
-    if scene.tied {
+    if body.tied {
         beside += "; velocities and accelerations may be off by more";
     }
     let closed = open.map_or_else(String::new, |open| format!("; the energy is closed to {open:.1e}"));
     match (expected, open) {
         (Some((error, how)), open) if open.is_none_or(|open| open <= error) => {
-            let most = if matches!(scene.time.control, StepControl::Tolerance(_)) { "at most " } else { "about " };
+            let most = if matches!(body.time.control, StepControl::Tolerance(_)) { "at most " } else { "about " };
             let of_what =
-                if scene.tied { "the size of the bodies and of the largest deformation" } else { "its largest" };
+                if body.tied { "the size of the bodies and of the largest deformation" } else { "its largest" };
             let meaning = format!("motion off by {most}{} of {of_what}", percent(error));
             Place::Steps.known(error, meaning, format!("{how}{beside}{closed}"), next(error))
         }

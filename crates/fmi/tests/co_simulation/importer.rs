@@ -9,7 +9,7 @@ use std::ptr;
 
 use flexframe::fmu::{FmuModel, FmuSettings, Input, Manifest, Source, Variable, marker, pack};
 use flexframe::model::Builder;
-use flexframe::scene::{Scene, System};
+use flexframe::scene::{Body, Scene};
 use flexframe_fmi::c_interface::*;
 use tempfile::TempDir;
 
@@ -22,21 +22,21 @@ pub struct Fmu {
 }
 
 impl Fmu {
-    pub fn of(scene: &Scene) -> Self {
-        Self::of_bodies(std::slice::from_ref(scene))
+    pub fn of(body: &Body) -> Self {
+        Self::of_bodies(std::slice::from_ref(body))
     }
 
-    pub fn of_bodies(scenes: &[Scene]) -> Self {
-        Self::of_system(&System { bodies: scenes.to_vec(), ..scenes[0].clone().into() })
+    pub fn of_bodies(scenes: &[Body]) -> Self {
+        Self::of_system(&Scene { bodies: scenes.to_vec(), ..scenes[0].clone().into() })
     }
 
-    pub fn of_system(system: &System) -> Self {
+    pub fn of_system(scene: &Scene) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let place = |name: &str| folder.path().join(name);
         // The functions are called in this process: the library in the FMU has only to be taken for it.
         fs::write(place("library"), format!("{} fmi2DoStep", marker())).unwrap();
         let settings = FmuSettings { library: Some(place("library")) };
-        let report = pack(system, &Builder::default(), &place("beam.fmu"), &settings, |_| ()).unwrap();
+        let report = pack(scene, &Builder::default(), &place("beam.fmu"), &settings, |_| ()).unwrap();
         let mut zip = zip::ZipArchive::new(Cursor::new(fs::read(place("beam.fmu")).unwrap())).unwrap();
         zip.extract(place("unpacked")).unwrap();
         let mut description = String::new();

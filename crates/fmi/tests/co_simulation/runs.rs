@@ -7,7 +7,7 @@ use flexframe::dynamics::{LoadFn, Rows, Setup, SharedLoad, Simulation};
 use flexframe::fmu::{FmuModel, Source};
 use flexframe::model::Builder;
 use flexframe::nalgebra::Vector3;
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 use flexframe_fmi::c_interface::{fmi2EnterInitializationMode, fmi2ExitInitializationMode};
 
 use crate::importer::{Fmu, Instance};
@@ -63,11 +63,11 @@ fn compare(fmu: &Fmu, rows: &[Vec<f64>], expected: &[Vec<f64>], inputs_jump: boo
 #[test]
 fn a_run_is_that_of_the_program() {
     let of_table = "{ amplitude = 1.0, history = { kind = \"half-sine\", duration = 0.4 } }";
-    for scene in [scene(FREE), scene(LARGE), scene(&driven(of_table)), rigid()] {
-        let fmu = Fmu::of(&scene);
-        let seconds = if scene.units.time == "ms" { 1e-3 } else { 1.0 };
-        let rows = run(&fmu, 10, scene.time.end / 10.0 * seconds, |_, _| ());
-        compare(&fmu, &rows, &own_run(&scene), false);
+    for body in [scene(FREE), scene(LARGE), scene(&driven(of_table)), rigid()] {
+        let fmu = Fmu::of(&body);
+        let seconds = if body.units.time == "ms" { 1e-3 } else { 1.0 };
+        let rows = run(&fmu, 10, body.time.end / 10.0 * seconds, |_, _| ());
+        compare(&fmu, &rows, &own_run(&body), false);
     }
 }
 
@@ -77,8 +77,8 @@ fn a_run_is_that_of_the_program() {
 fn a_controller_outside_is_the_same_controller_inside() {
     const GAIN: f64 = 15.0;
     let (count, step) = (50, 2.0 * STEP);
-    let scene = scene(FREE);
-    let fmu = Fmu::of(&scene);
+    let body = scene(FREE);
+    let fmu = Fmu::of(&body);
     let along = |what: &str| [1, 2, 3].map(|i| fmu.reference(&format!("points.tip.{what}[{i}]")));
     let (velocity, force) = (along("velocity"), along("force"));
     let rows = run(&fmu, count, step, |instance, _| {
@@ -86,8 +86,8 @@ fn a_controller_outside_is_the_same_controller_inside() {
         instance.set(&force, &held).unwrap();
     });
 
-    let fmu_model = FmuModel::new(scene.clone().into(), &Builder::default(), |_| ()).unwrap();
-    assert_eq!(fmu_model.system, scene.clone().into(), "needs are no edits of the scene");
+    let fmu_model = FmuModel::new(body.clone().into(), &Builder::default(), |_| ()).unwrap();
+    assert_eq!(fmu_model.system, body.clone().into(), "needs are no edits of the scene");
     let (model, tip) = (&fmu_model.bodies[0].model, 1);
     assert_eq!(model.points[tip].0, "tip");
     let held = Arc::new(Mutex::new(Vector3::zeros()));
@@ -97,9 +97,9 @@ fn a_controller_outside_is_the_same_controller_inside() {
     }));
     let loads: Vec<SharedLoad> = model.loads().iter().cloned().chain([damper]).collect();
     let points: Vec<_> = model.points.iter().map(|(_, point)| point.clone()).collect();
-    let initial = model.initial(&scene);
+    let initial = model.initial(&body);
     let rows_at = Rows::Interval(step);
-    let setup = Setup { loads: &loads, points: &points, rows: rows_at, ..model.setup(&scene, &initial) };
+    let setup = Setup { loads: &loads, points: &points, rows: rows_at, ..model.setup(&body, &initial) };
     let mut simulation = Simulation::new(&setup).unwrap();
     let place = |name: &str| fmu.of_row().0.iter().position(|reference| *reference == fmu.reference(name)).unwrap();
     let tip_y = place("points.tip.displacement[2]");
@@ -114,7 +114,7 @@ fn a_controller_outside_is_the_same_controller_inside() {
         freely = freely.max(row[strain]);
     }
     // It does something: without it, the motion is another.
-    let alone = own_run(&scene);
+    let alone = own_run(&body);
     let (last, at) = (rows.last().unwrap()[tip_y], fmu.of_row().1[tip_y]);
     assert!((last - alone.last().unwrap()[at]).abs() > 1e-2);
 }
@@ -226,8 +226,8 @@ fn two_instances_know_nothing_of_each_other() {
 #[test]
 fn outputs_depend_on_inputs_as_described() {
     let mut found = [false; 2];
-    for scene in [scene(FREE), scene(LARGE), scene(&driven("{ amplitude = 0.5, history = \"constant\" }"))] {
-        let fmu = Fmu::of(&scene);
+    for body in [scene(FREE), scene(LARGE), scene(&driven("{ amplitude = 0.5, history = \"constant\" }"))] {
+        let fmu = Fmu::of(&body);
         let (references, _) = fmu.of_row();
         let mut instance = fmu.instantiate().unwrap();
         instance.set_up(0.0, None).unwrap();
@@ -258,8 +258,8 @@ fn outputs_depend_on_inputs_as_described() {
 /// FMI counts time in seconds, the scene in milliseconds; other units are described by their powers of SI.
 #[test]
 fn time_is_in_seconds_and_units_are_described() {
-    let scene: Scene = rigid();
-    let fmu = Fmu::of(&scene);
+    let body: Body = rigid();
+    let fmu = Fmu::of(&body);
     let mut instance = fmu.start();
     instance.step(0.0, 0.02).unwrap();
     assert_eq!(instance.time(), 0.02);
@@ -295,8 +295,8 @@ fn the_bodies_of_a_scene_are_one_fmu_and_know_nothing_of_each_other() {
     let mut instance = both.start();
     instance.set(&[force], &[3.0]).unwrap();
     let rows = follow(&mut instance, 0);
-    for (i, (scene, of_body)) in scenes.iter().zip(["points.tip.displacement[2]", "attitude[2]"]).enumerate() {
-        let alone = Fmu::of(&flexframe::scene::Scene { name: None, ..scene.clone() });
+    for (i, (body, of_body)) in scenes.iter().zip(["points.tip.displacement[2]", "attitude[2]"]).enumerate() {
+        let alone = Fmu::of(&flexframe::scene::Body { name: None, ..body.clone() });
         let mut of_alone = alone.start();
         if i == 0 {
             of_alone.set(&[alone.reference("points.tip.force[2]")], &[3.0]).unwrap();
@@ -349,8 +349,8 @@ damping = { translation = [1.0, 1.0, 1.0] }
 end = 1.0
 tolerance = 1e-8
 "#;
-    let system = flexframe::scene::System::parse(text, "rotor.toml").unwrap();
-    let fmu = Fmu::of_system(&system);
+    let scene = flexframe::scene::Scene::parse(text, "rotor.toml").unwrap();
+    let fmu = Fmu::of_system(&scene);
     let motor = fmu.reference("joints.axle.motor.torque");
     let of_springs = ["joints.wire.length", "joints.wire.pull", "joints.wire.force[3]", "joints.pad.force[3]"];
     let of_springs = of_springs.map(|name| fmu.reference(name));

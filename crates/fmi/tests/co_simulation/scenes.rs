@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use flexframe::fmu::{FmuBody, FmuModel};
 use flexframe::model::Builder;
 use flexframe::row::{BodyRow, Row};
-use flexframe::scene::{Scene, System};
+use flexframe::scene::{Body, Scene};
 
 const MATERIAL: &str = "material = { young_modulus = 6.8952e10, poisson_ratio = 0.3, density = 2766.7 }";
 pub const STEP: f64 = 2e-3;
@@ -16,11 +16,11 @@ fn mesh() -> PathBuf {
 }
 
 /// A scene on the beam with two points, in steps of [`STEP`].
-pub fn scene(more: &str) -> Scene {
+pub fn scene(more: &str) -> Body {
     scene_in_steps(more, &format!("step = {STEP}"))
 }
 
-pub fn scene_in_steps(more: &str, step: &str) -> Scene {
+pub fn scene_in_steps(more: &str, step: &str) -> Body {
     let text = format!(
         r#"
         title = "a beam"
@@ -43,7 +43,7 @@ pub fn scene_in_steps(more: &str, step: &str) -> Scene {
         "#,
         mesh()
     );
-    Scene::parse(&text, "beam.toml").unwrap()
+    Body::parse(&text, "beam.toml").unwrap()
 }
 
 /// It flies, tumbles, and is struck.
@@ -94,7 +94,7 @@ pub fn driven(speed: &str) -> String {
 }
 
 /// A body without a mesh, on a pin.
-pub fn rigid() -> Scene {
+pub fn rigid() -> Body {
     let text = r#"
         title = "a top"
         units = { length = "mm", mass = "Mg", time = "ms" }
@@ -116,11 +116,11 @@ pub fn rigid() -> Scene {
         interval = 20.0
         points = { top = [0.0, 0.0, 100.0] }
     "#;
-    Scene::parse(text, "top.toml").unwrap()
+    Body::parse(text, "top.toml").unwrap()
 }
 
 /// The beam and a rigid body, as bodies of one scene.
-pub fn bodies() -> Vec<Scene> {
+pub fn bodies() -> Vec<Body> {
     let text = format!(
         r#"
         title = "two bodies"
@@ -142,15 +142,15 @@ pub fn bodies() -> Vec<Scene> {
         "#,
         mesh()
     );
-    System::parse(&text, "bodies.toml").unwrap().bodies
+    Scene::parse(&text, "bodies.toml").unwrap().bodies
 }
 
 /// The rows of a run of the library, without an FMU.
-pub fn own_run(scene: &Scene) -> Vec<Vec<f64>> {
-    let fmu = FmuModel::new(scene.clone().into(), &Builder::default(), |_| ()).unwrap();
-    let FmuBody { scene, model, .. } = &fmu.bodies[0];
+pub fn own_run(body: &Body) -> Vec<Vec<f64>> {
+    let fmu = FmuModel::new(body.clone().into(), &Builder::default(), |_| ()).unwrap();
+    let FmuBody { body, model, .. } = &fmu.bodies[0];
     let mut row = Row { time: 0.0, bodies: vec![BodyRow::new(model)], joints: Vec::new() };
-    (model.start(scene).unwrap())
+    (model.start(body).unwrap())
         .map(|now| {
             row.bodies[0].motion = now.unwrap();
             row.bodies[0].complete(model);

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use mesh_import::files_of_mesh;
-use scene::{Body, FileBody, System};
+use scene::{BodySource, FileBody, Scene};
 use slepc::Slepc;
 
 use crate::building::builder::Builder;
@@ -13,20 +13,20 @@ impl Builder {
     /// All files that the models and the motion of a scene are read from, each once: the scene file, the tables of histories of
     /// bodies and joints and of measured modes, the files of the bodies, those that a mesh or geometry may include, and those
     /// that SLEPc has left in a folder.
-    pub fn files(&self, system: &System) -> Vec<PathBuf> {
-        let of_bodies = system.bodies.iter().flat_map(|scene| files_of_body(&scene.body));
-        let files = system.files().into_iter().chain(of_bodies);
+    pub fn files(&self, scene: &Scene) -> Vec<PathBuf> {
+        let of_bodies = scene.bodies.iter().flat_map(|body| files_of_body(&body.source));
+        let files = scene.files().into_iter().chain(of_bodies);
         let mut known = BTreeSet::new();
         files.chain(self.solver.iter().flat_map(Slepc::files)).filter(|file| known.insert(file.clone())).collect()
     }
 }
 
 /// The files of a body, and what a mesh or geometry may include.
-pub fn files_of_body(body: &Body) -> Vec<PathBuf> {
+pub fn files_of_body(body: &BodySource) -> Vec<PathBuf> {
     match body {
-        Body::File(FileBody { file, .. }) => vec![file.clone()],
-        Body::Meshed(body) => files_of_mesh(&body.mesh),
-        Body::Matrices(matrices) => matrices.list().map(|(_, path)| path.to_owned()).collect(),
-        Body::Rigid(_) => Vec::new(),
+        BodySource::File(FileBody { file, .. }) => vec![file.clone()],
+        BodySource::Meshed(body) => files_of_mesh(&body.mesh),
+        BodySource::Matrices(matrices) => matrices.list().map(|(_, path)| path.to_owned()).collect(),
+        BodySource::Rigid(_) => Vec::new(),
     }
 }

@@ -1,7 +1,7 @@
 //! The body of a scene that comes from a body file.
 
 use fem_tet10::Materials;
-use scene::{FileBody, MeshedBody, Scene, SceneError};
+use scene::{Body, FileBody, MeshedBody, SceneError};
 use sealed::{Format, SealedFile};
 
 use crate::body::origin::Origin;
@@ -15,7 +15,7 @@ const HELP: &str = "make the file again: flexframe reduce SCENE -o FILE, from a 
 /// The body file of a scene, and the body that it was made of. What the scene says besides must be the same.
 pub(crate) fn read_body_file(
     builder: &Builder,
-    scene: &Scene,
+    scene: &Body,
     given: &FileBody,
 ) -> Result<(SealedFile, MeshedBody), BuildError> {
     let refuse = |found: String, expected: &str| -> SceneError { scene.refuse(KEY, found, expected, HELP) };

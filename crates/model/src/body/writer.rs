@@ -11,7 +11,7 @@ use fem_tet10::Mesh;
 use keys::Hash;
 use mesh_import::Beside;
 use modal::Modes;
-use scene::{Body, Scene};
+use scene::{Body, BodySource};
 use sealed::{Declared, Kind, Number, SealedError, SealedFile, Writer};
 use whole_file::TemporaryFolder;
 
@@ -44,7 +44,7 @@ impl Numbers {
 
 /// Datasets that are read by name.
 struct Named<'a> {
-    scene: &'a Scene,
+    scene: &'a Body,
     datasets: Vec<(Declared, Numbers)>,
 }
 
@@ -57,42 +57,42 @@ impl Builder {
     /// [`BuildError`], also for a rigid body without a mesh.
     pub fn write_body(
         &self,
-        scene: &Scene,
+        body: &Body,
         path: &Path,
         matrices: bool,
         mut progress: impl FnMut(BuildProgress),
     ) -> Result<Model, BuildError> {
-        match &scene.body {
-            Body::Meshed(body) if !body.tied_masses.is_empty() => {
+        match &body.source {
+            BodySource::Meshed(meshed) if !meshed.tied_masses.is_empty() => {
                 let help =
                     "run the scene as it is: the cache keeps what is computed of it, so that later runs are quick";
                 let found = "masses beside the body, which a body file does not have";
-                return Err(scene.refuse("body.tied_masses", found, "`point_masses`, or none", help).into());
+                return Err(body.refuse("body.tied_masses", found, "`point_masses`, or none", help).into());
             }
-            Body::Meshed(_) | Body::File(_) => {}
-            Body::Rigid(_) => {
+            BodySource::Meshed(_) | BodySource::File(_) => {}
+            BodySource::Rigid(_) => {
                 let help = "run the scene as it is: a rigid body is reduced already";
-                return Err(scene.refuse("body.rigid", "a rigid body", "a body with a mesh", help).into());
+                return Err(body.refuse("body.rigid", "a rigid body", "a body with a mesh", help).into());
             }
-            Body::Matrices(_) => {
+            BodySource::Matrices(_) => {
                 let help = "run the scene as it is: the cache keeps what is computed of the matrices, so that later runs are quick";
-                return Err(scene.refuse("body.matrices", "a body of matrices", "a body with a mesh", help).into());
+                return Err(body.refuse("body.matrices", "a body of matrices", "a body with a mesh", help).into());
             }
         }
-        let stress_field = self.needs.stress_field || self.needed(scene).any_stress();
+        let stress_field = self.needs.stress_field || self.needed(body).any_stress();
         let builder = self.needing(Needs { stress_field, ..self.needs.clone() });
         // The values come by way of a cache, from which nothing is removed in the meantime: that of the user, or one of a time where
         // it cannot be written, which is a warning.
         if let Some(folder) = self.cache.folder().filter(|_| !self.cache.is_closed()) {
             let cache = self.cache.elsewhere(folder, u64::MAX);
-            let written = builder.write_by_way_of(&cache, scene, path, matrices, &mut progress);
+            let written = builder.write_by_way_of(&cache, body, path, matrices, &mut progress);
             if written.is_ok() || !cache.is_closed() {
                 return written;
             }
         }
         let temporary = TemporaryFolder::new().map_err(SealedError::system(path, "make a temporary folder"))?;
         let cache = self.cache.elsewhere(temporary.path(), u64::MAX);
-        let written = builder.write_by_way_of(&cache, scene, path, matrices, &mut progress);
+        let written = builder.write_by_way_of(&cache, body, path, matrices, &mut progress);
         if written.is_err() && cache.is_closed() {
             let full = io::Error::from(io::ErrorKind::StorageFull);
             return Err(
@@ -105,28 +105,28 @@ impl Builder {
     fn write_by_way_of(
         &self,
         cache: &Cache,
-        scene: &Scene,
+        given: &Body,
         path: &Path,
         matrices: bool,
         mut progress: impl FnMut(BuildProgress),
     ) -> Result<Model, BuildError> {
         let builder = Self { cache: cache.clone(), ..self.clone() };
-        let assembly = builder.assemble(scene, &mut progress)?;
+        let assembly = builder.assemble(given, &mut progress)?;
         if matches!(&assembly.0, Assembled::Meshed(assembled) if assembled.store.is_none()) {
-            return Err(without_store(cache, scene));
+            return Err(without_store(cache, given));
         }
         let mut variants = assembly.variants()?;
-        let model = variants.build(scene, &builder.needs, &mut progress)?;
+        let model = variants.build(given, &builder.needs, &mut progress)?;
         let (Assembled::Meshed(assembled), Some(meshed), Some(structure)) =
             (&assembly.0, &model.meshed, variants.structure())
         else {
             return Ok(model);
         };
         let Some(body) = assembled.elements() else { return Ok(model) };
-        let Some(store) = &assembled.store else { return Err(without_store(cache, scene)) };
+        let Some(store) = &assembled.store else { return Err(without_store(cache, given)) };
 
         let arrays = MeshArrays::new(&meshed.mesh, &meshed.mesh_notes, &[], &Beside::default());
-        let mut named = Named { scene, datasets: Vec::new() };
+        let mut named = Named { scene: given, datasets: Vec::new() };
         named.add_groups(&meshed.mesh);
         named.add_modes(&model, meshed);
         named.add_constants(&model);
@@ -137,7 +137,7 @@ impl Builder {
             let description = "displacement of each node of the bent body that the modes are about";
             let shape = [reference.nrows() / 3, 3];
             let numbers = Numbers::F64(by_columns(reference.as_ref()));
-            named.add("reference/displacement", &shape, &scene.units.length, "mesh", description, numbers);
+            named.add("reference/displacement", &shape, &given.units.length, "mesh", description, numbers);
         }
         if let Some(stress) = &model.stress {
             named.add_stress(stress, &model);
@@ -153,29 +153,29 @@ impl Builder {
             mesh: body.mesh.display().to_string(),
             mesh_hash: store.mesh_hash().to_string(),
             elements: ElementKeys::of(body),
-            modes: crate::building::variants::requested(&builder.needed(scene)),
+            modes: crate::building::variants::requested(&builder.needed(given)),
             support: structure.support_hash(),
             reference: structure.reference().map(|reference| reference.hash.to_string()),
         };
         let mut texts = BTreeMap::from(arrays.texts());
         texts.extend([
             (ORIGIN.to_owned(), origin.to_json()),
-            ("title".to_owned(), scene.title.clone()),
-            ("scene".to_owned(), scene.source.clone()),
+            ("title".to_owned(), given.title.clone()),
+            ("scene".to_owned(), given.text_alone.clone()),
             ("program_version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
             ("mesh_file".to_owned(), origin.mesh.clone()),
             ("mesh_hash".to_owned(), origin.mesh_hash.clone()),
-            ("units_length".to_owned(), scene.units.length.clone()),
-            ("units_mass".to_owned(), scene.units.mass.clone()),
-            ("units_time".to_owned(), scene.units.time.clone()),
+            ("units_length".to_owned(), given.units.length.clone()),
+            ("units_mass".to_owned(), given.units.mass.clone()),
+            ("units_time".to_owned(), given.units.time.clone()),
         ]);
-        write(path, texts, &arrays, &scene.units.length, &named, &store.files()?)?;
+        write(path, texts, &arrays, &given.units.length, &named, &store.files()?)?;
         Ok(model)
     }
 }
 
 /// Error of a `folder` that cannot keep values of the body, of which the file is made.
-fn without_store(cache: &Cache, scene: &Scene) -> BuildError {
+fn without_store(cache: &Cache, body: &Body) -> BuildError {
     if cache.is_closed() {
         let what = cache.notes().warnings.join("; ");
         return SealedError::system(cache.folder().unwrap_or(Path::new("")), "write the cache")(std::io::Error::other(
@@ -186,7 +186,7 @@ fn without_store(cache: &Cache, scene: &Scene) -> BuildError {
     let found =
         "a mesh file that names others which cannot be known before: what the body is made of cannot be told later";
     let help = "write it as one MSH 4.1 file first: gmsh -3 -order 2 -format msh41 BODY.geo -o BODY.msh";
-    scene.refuse("body.mesh", found, "a mesh in one file", help).into()
+    body.refuse("body.mesh", found, "a mesh in one file", help).into()
 }
 
 /// Writes the file. An array that is there by name already gets a second name.

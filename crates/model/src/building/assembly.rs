@@ -9,7 +9,7 @@ use fem_tet10::{Materials, Matrices, Mesh};
 use matrix_import::MatrixFiles;
 use mesh_import::Imported;
 use modal::{ModalError, Solver, Support};
-use scene::{Body, Constraint, MeshedBody, RigidBody, Scene};
+use scene::{Body, BodySource, Constraint, MeshedBody, RigidBody};
 
 use crate::body::given::read_body_file;
 use crate::building::builder::Builder;
@@ -43,7 +43,7 @@ pub(crate) enum MadeOf {
 pub(crate) struct AssembledMesh {
     pub builder: Builder,
     /// For messages.
-    pub scene: Scene,
+    pub scene: Body,
     pub body: MadeOf,
     pub mesh: Arc<Mesh>,
     /// Notes about the parts of the mesh file that were left out.
@@ -67,45 +67,45 @@ impl Builder {
     ///
     /// # Errors
     /// [`BuildError`]: what the mesh, the materials or the supports refuse.
-    pub fn assemble(&self, scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Assembly, BuildError> {
-        let (body, given) = match &scene.body {
-            Body::Meshed(body) => (body.clone(), None),
-            Body::File(given) => {
-                let (file, body) = read_body_file(self, scene, given)?;
-                (body, Some(file))
+    pub fn assemble(&self, body: &Body, mut progress: impl FnMut(BuildProgress)) -> Result<Assembly, BuildError> {
+        let (meshed, given) = match &body.source {
+            BodySource::Meshed(meshed) => (meshed.clone(), None),
+            BodySource::File(given) => {
+                let (file, meshed) = read_body_file(self, body, given)?;
+                (meshed, Some(file))
             }
-            Body::Matrices(files) => return self.assemble_matrices(scene, files, progress),
-            Body::Rigid(body) => return Ok(Assembly(Assembled::Rigid(*body))),
+            BodySource::Matrices(files) => return self.assemble_matrices(body, files, progress),
+            BodySource::Rigid(meshed) => return Ok(Assembly(Assembled::Rigid(*meshed))),
         };
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
         let read = || {
             // It is read once: the values that are kept and the mesh are of the same bytes.
-            let file = if given.is_none() { Some(mesh_file(self, scene, &body)?) } else { None };
-            let store = Store::open(&self.cache, &body, given, file.as_ref())?;
+            let file = if given.is_none() { Some(mesh_file(self, body, &meshed)?) } else { None };
+            let store = Store::open(&self.cache, &meshed, given, file.as_ref())?;
             let made = || match &file {
-                Some(file) => mesh_in(self, scene, file),
-                None => mesh_in(self, scene, &mesh_file(self, scene, &body)?),
+                Some(file) => mesh_in(self, body, file),
+                None => mesh_in(self, body, &mesh_file(self, body, &meshed)?),
             };
             let imported = match &store {
-                Some(store) => store.mesh(scene, &body, made)?,
+                Some(store) => store.mesh(body, &meshed, made)?,
                 None => made()?,
             };
             Ok::<_, BuildError>((store, imported))
         };
         let (store, Imported { mesh, notes: mut mesh_notes, materials, beside }) = timed(&mut times.mesh, read)?;
-        mesh_notes.extend(other_materials(&mesh, &materials, &body.materials));
-        mesh_notes.extend(other_masses(&mesh, &beside, &body));
-        mesh_notes.extend(other_ties(&beside, &scene.markers, &body));
+        mesh_notes.extend(other_materials(&mesh, &materials, &meshed.materials));
+        mesh_notes.extend(other_masses(&mesh, &beside, &meshed));
+        mesh_notes.extend(other_ties(&beside, &body.markers, &meshed));
         let mesh = Arc::new(mesh);
-        doubts(scene, self.needed(scene).loads, &body, &mesh)
+        doubts(body, self.needed(body).loads, &meshed, &mesh)
             .into_iter()
             .for_each(|doubt| progress(BuildProgress::Doubt(doubt)));
-        let (support, drive) = support(scene, Some((&mesh, 3)))?;
+        let (support, drive) = support(body, Some((&mesh, 3)))?;
         let assembled = AssembledMesh {
             builder: self.clone(),
-            scene: scene.clone(),
-            body: MadeOf::Elements(body),
+            scene: body.clone(),
+            body: MadeOf::Elements(meshed),
             mesh,
             mesh_notes,
             matrices: OnceLock::new(),
@@ -127,20 +127,20 @@ impl Builder {
     /// The same of matrices from another program, which are read each time.
     fn assemble_matrices(
         &self,
-        scene: &Scene,
+        body: &Body,
         files: &MatrixFiles,
         mut progress: impl FnMut(BuildProgress),
     ) -> Result<Assembly, BuildError> {
         let mut times = BuildTimes::default();
         progress(BuildProgress::Mesh);
-        let given = timed(&mut times.mesh, || Given::read(scene, files))?;
+        let given = timed(&mut times.mesh, || Given::read(body, files))?;
         let Given { nodes, hash, notes: mesh_notes, matrices, checks } = given;
         let mesh = Arc::new(nodes);
         let store = Store::of_matrices(&self.cache, hash);
-        let (support, drive) = support(scene, Some((&mesh, checks.dofs)))?;
+        let (support, drive) = support(body, Some((&mesh, checks.dofs)))?;
         let assembled = AssembledMesh {
             builder: self.clone(),
-            scene: scene.clone(),
+            scene: body.clone(),
             body: MadeOf::Files(files.clone()),
             mesh,
             mesh_notes,
@@ -159,18 +159,18 @@ impl Builder {
 
 impl Assembly {
     /// All that the assembly of a scene is made of with these needs, as a text: scenes with the same may share it.
-    pub fn made_of(scene: &Scene, needs: &Needs) -> String {
-        let scene = Needed::new(scene, needs);
-        let flexibility = scene.effects.choices[Effect::Flexibility];
+    pub fn made_of(body: &Body, needs: &Needs) -> String {
+        let body = Needed::new(body, needs);
+        let flexibility = body.effects.choices[Effect::Flexibility];
         // Such a support is checked against what the scene begins with.
-        let initial = matches!(scene.reduced_constraint(), Some(Constraint::Support { .. })).then_some(&scene.initial);
+        let initial = matches!(body.reduced_constraint(), Some(Constraint::Support { .. })).then_some(&body.initial);
         // So is the rest that modes are about.
-        let about = scene.modes.about.map(|about| (about, &scene.loads, scene.initial.attitude, scene.time.end));
+        let about = body.modes.about.map(|about| (about, &body.loads, body.initial.attitude, body.time.end));
         format!(
             "{:?} {:?} {:?} {flexibility:?} {initial:?} {about:?}",
-            scene.body,
-            scene.reduced_constraint(),
-            scene.modes.flexible
+            body.source,
+            body.reduced_constraint(),
+            body.modes.flexible
         )
     }
 

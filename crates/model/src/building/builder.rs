@@ -1,6 +1,6 @@
 //! Settings with which bodies are built.
 
-use scene::Scene;
+use scene::Body;
 use slepc::Slepc;
 
 use crate::cache::Cache;
@@ -34,7 +34,7 @@ impl Builder {
     }
 
     /// The body of a scene with the needs.
-    pub(crate) fn needed<'a>(&self, scene: &'a Scene) -> Needed<'a> {
-        Needed::new(scene, &self.needs)
+    pub(crate) fn needed<'a>(&self, body: &'a Body) -> Needed<'a> {
+        Needed::new(body, &self.needs)
     }
 }

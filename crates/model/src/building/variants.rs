@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use dynamics::Effect;
-use scene::{Choice, RigidBody, Scene, System};
+use scene::{Body, Choice, RigidBody, Scene};
 
 use crate::building::assembly::{Assembled, AssembledMesh, Assembly};
 use crate::building::builder::Builder;
@@ -39,16 +39,16 @@ impl Builder {
     /// # Errors
     /// [`BuildError`]: what the mesh, the materials or the modes refuse, with the place in the scene file where
     /// there is one.
-    pub fn build(&self, scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Model, BuildError> {
-        self.assemble(scene, &mut progress)?.variants()?.into_model(&self.needed(scene), progress)
+    pub fn build(&self, body: &Body, mut progress: impl FnMut(BuildProgress)) -> Result<Model, BuildError> {
+        self.assemble(body, &mut progress)?.variants()?.into_model(&self.needed(body), progress)
     }
 
     /// The models of all bodies of a scene.
     ///
     /// # Errors
     /// As [`Builder::build`].
-    pub fn models(&self, system: &System, mut progress: impl FnMut(BuildProgress)) -> Result<Vec<Model>, BuildError> {
-        system.bodies.iter().map(|scene| self.build(scene, &mut progress)).collect()
+    pub fn models(&self, scene: &Scene, mut progress: impl FnMut(BuildProgress)) -> Result<Vec<Model>, BuildError> {
+        scene.bodies.iter().map(|body| self.build(body, &mut progress)).collect()
     }
 }
 
@@ -57,8 +57,8 @@ impl Model {
     ///
     /// # Errors
     /// As [`Builder::build`].
-    pub fn build(scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
-        Builder::default().build(scene, progress)
+    pub fn build(body: &Body, progress: impl FnMut(BuildProgress)) -> Result<Self, BuildError> {
+        Builder::default().build(body, progress)
     }
 }
 
@@ -85,18 +85,18 @@ impl<'a> Variants<'a> {
     /// As [`Builder::build`].
     pub fn build(
         &mut self,
-        scene: &Scene,
+        given: &Body,
         needs: &Needs,
         mut progress: impl FnMut(BuildProgress),
     ) -> Result<Model, BuildError> {
-        let scene = &Needed::new(scene, needs);
+        let given = &Needed::new(given, needs);
         match &mut self.0 {
             Of::Meshed(variants) => {
-                let model = variants.build(scene, &mut progress);
+                let model = variants.build(given, &mut progress);
                 variants.structure.rest();
                 model
             }
-            Of::Rigid(body) => rigid::build(scene, body),
+            Of::Rigid(body) => rigid::build(given, body),
         }
     }
 
@@ -105,15 +105,13 @@ impl<'a> Variants<'a> {
     ///
     /// # Errors
     /// As [`Assembly::variants`], and of a body without modes.
-    pub fn write_problem(&self, scene: &Scene, folder: &Path, ranks: usize) -> Result<Vec<PathBuf>, BuildError> {
+    pub fn write_problem(&self, body: &Body, folder: &Path, ranks: usize) -> Result<Vec<PathBuf>, BuildError> {
         let Of::Meshed(variants) = &self.0 else {
             let help = "run the scene as it is: a rigid body has no modes";
-            return Err(scene
-                .refuse("body.rigid", "a rigid body", "a body with a mesh, or with matrices", help)
-                .into());
+            return Err(body.refuse("body.rigid", "a rigid body", "a body with a mesh, or with matrices", help).into());
         };
-        match requested(&variants.assembled.builder.needed(scene)) {
-            0 => Err(scene.refuse("modes.flexible", "no modes", "one or more", "ask for modes").into()),
+        match requested(&variants.assembled.builder.needed(body)) {
+            0 => Err(body.refuse("modes.flexible", "no modes", "one or more", "ask for modes").into()),
             modes => variants.structure.write_problem(modes, folder, ranks),
         }
     }

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 
 use keys::{Hash, Key};
 use mesh_import::{Imported, MeshFile};
-use scene::{MeshedBody, Scene};
+use scene::{Body, MeshedBody};
 use sealed::{Array, Declared, Format, Kind, SealedError, SealedFile, Writer};
 
 use crate::body::origin::{ElementKeys, Origin};
@@ -82,11 +82,11 @@ impl Store {
     /// The mesh of the body, with what its file has that was left out; `made` of the file where it is not kept.
     pub fn mesh(
         &self,
-        scene: &Scene,
-        body: &MeshedBody,
+        body: &Body,
+        meshed: &MeshedBody,
         made: impl FnOnce() -> Result<Imported, BuildError>,
     ) -> Result<Imported, BuildError> {
-        let source = body.mesh.display().to_string();
+        let source = meshed.mesh.display().to_string();
         if let Some(file) = &self.given {
             return Ok(arrays::read(file, source)?);
         }
@@ -99,7 +99,7 @@ impl Store {
         if let Some(place) = place.filter(|_| !self.cache.is_closed()) {
             let arrays = MeshArrays::new(&imported.mesh, &imported.notes, &imported.materials, &imported.beside);
             let texts = BTreeMap::from(arrays.texts());
-            self.write(&place, texts, &arrays.declared(&scene.units.length), |writer| arrays.write(writer));
+            self.write(&place, texts, &arrays.declared(&body.units.length), |writer| arrays.write(writer));
         }
         Ok(imported)
     }

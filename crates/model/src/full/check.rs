@@ -5,7 +5,7 @@ use faer::{ColRef, Mat};
 use fem_tet10::{Location, StressRecovery};
 use nalgebra::Vector3;
 use nonlinear::{FullBody, FullState, StateError, StateErrorSettings, Tangent, state_error, true_frequencies};
-use scene::Scene;
+use scene::Body;
 use serde::Serialize;
 
 use crate::error::refuse;
@@ -94,7 +94,7 @@ pub struct FrequencyCheck {
 /// A full body that checks states of a model: with its factor at rest.
 pub struct Checker<'a> {
     full: &'a FullModel,
-    scene: &'a Scene,
+    scene: &'a Body,
     model: &'a Model,
     body: &'a FullBody<'a>,
     at_rest: Tangent<'a>,
@@ -118,15 +118,15 @@ impl<'a> Checker<'a> {
     /// [`FullError`].
     pub fn new(
         full: &'a FullModel,
-        scene: &'a Scene,
+        given: &'a Body,
         model: &'a Model,
         body: &'a FullBody<'a>,
     ) -> Result<Self, FullError> {
-        let points = crate::model::points::output_points(scene, |key: String, at: [f64; 3]| {
+        let points = crate::model::points::output_points(given, |key: String, at: [f64; 3]| {
             let located = full.assembled.mesh.locate(at);
-            located.map_err(|error| refuse(scene, &key, error).into())
+            located.map_err(|error| refuse(given, &key, error).into())
         })?;
-        Ok(Self { full, scene, model, body, at_rest: body.at_rest()?, points, course: Course::default() })
+        Ok(Self { full, scene: given, model, body, at_rest: body.at_rest()?, points, course: Course::default() })
     }
 
     /// States errors against the displacements of a run, too.

@@ -8,7 +8,7 @@ use faer::{Col, Mat, MatRef};
 use fem_tet10::{BodyNumber, Location, MatrixRates, Mesh, stretch};
 use modal::{ModeRates, Modes, Solver, StaticAccuracy};
 use nalgebra::Vector3;
-use scene::{LoadKind, MeshedBody, Scene};
+use scene::{Body, LoadKind, MeshedBody};
 
 use crate::building::assembly::AssembledMesh;
 use crate::error::{BuildError, modal};
@@ -48,7 +48,7 @@ pub(super) struct At<'a> {
 }
 
 impl At<'_> {
-    fn scene(&self) -> &Scene {
+    fn scene(&self) -> &Body {
         &self.assembled.scene
     }
 

@@ -13,7 +13,7 @@ use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Location, MatrixRates, Mesh};
 use modal::{ModalError, Modes, Solver, StaticAccuracy, centrifugal_accelerations, side_by_side};
 use nalgebra::Vector3;
-use scene::{Scene, Tie};
+use scene::{Body, Tie};
 
 use crate::building::assembly::AssembledMesh;
 use crate::error::{BuildError, modal};
@@ -62,27 +62,27 @@ impl VariedBody {
     /// # Errors
     /// [`BuildError`]; a number that moves nodes; a marker whose nodes move as one rigid body; a basis that cuts modes of one frequency.
     pub fn in_joints(&self, model: &Model, parameters: &[Parameter]) -> Result<BodyInJoints, BuildError> {
-        let scene = self.scene();
+        let body = self.scene();
         let AssembledMesh { mesh, .. } = self.assembled();
-        let Some(meshed) = &model.meshed else { return Err(rigid(scene)) };
+        let Some(meshed) = &model.meshed else { return Err(rigid(body)) };
         if let Some(parameter) = parameters.iter().find(|parameter| !parameter.is_key()) {
             let help = "leave it out, or take its rates of the body alone";
             let found = format!("{}, which moves the markers of a body in joints", parameter.name);
-            return Err(scene.refuse("body", found, "numbers of materials and point masses", help).into());
+            return Err(body.refuse("body", found, "numbers of materials and point masses", help).into());
         }
         // The modes of such a body are combinations that keep its patches rigid: none is an eigenvector, so that (D7) is not its rate.
-        if let Some(marker) = scene.markers.iter().find(|marker| marker.tie == Tie::Rigid) {
+        if let Some(marker) = body.markers.iter().find(|marker| marker.tie == Tie::Rigid) {
             let key = marker.key_of_tie();
             let help = "give it `tie = \"nodes\"` or `tie = \"mean\"`, or name parameters of other bodies";
             let expected = "a tie that leaves the modes of the body as they are";
-            return Err(scene.refuse(&key, "\"rigid\", which mixes the modes of the body", expected, help).into());
+            return Err(body.refuse(&key, "\"rigid\", which mixes the modes of the body", expected, help).into());
         }
-        let matrices = FeMatrices::Assembled(matrices(scene, self.body(), mesh)?);
-        let solver = self.assembled().solver(&matrices, mesh.positions()).map_err(modal(scene))?;
+        let matrices = FeMatrices::Assembled(matrices(body, self.body(), mesh)?);
+        let solver = self.assembled().solver(&matrices, mesh.positions()).map_err(modal(body))?;
         let basis = Basis::new(self, (&solver, &matrices), model, meshed)?;
         let rates = parameters.iter().map(|parameter| basis.with(self, parameter)).collect::<Result<_, _>>()?;
         let mass = basis.fields.transpose() * &basis.momenta;
-        let bearing = bearing(&(basis.fields.transpose() * &basis.on_markers), &mass).map_err(modal(scene))?;
+        let bearing = bearing(&(basis.fields.transpose() * &basis.on_markers), &mass).map_err(modal(body))?;
         Ok(BodyInJoints { mass, bearing, rates })
     }
 }
@@ -109,14 +109,14 @@ fn inverse(of: &Mat<f64>) -> Result<Mat<f64>, ModalError> {
     Ok(Mat::from_fn(of.ncols(), of.nrows(), entry))
 }
 
-fn rigid(scene: &Scene) -> BuildError {
-    scene.refuse("body", "a rigid body", "a body with a mesh", "leave its numbers out").into()
+fn rigid(body: &Body) -> BuildError {
+    body.refuse("body", "a rigid body", "a body with a mesh", "leave its numbers out").into()
 }
 
 /// The basis of a body in joints, and what it was made of.
 struct Basis<'a> {
     solver: &'a Solver<'a>,
-    scene: &'a Scene,
+    scene: &'a Body,
     mesh: &'a Mesh,
     /// All modes that are known: those of the model, and a few more.
     known: Modes,
@@ -149,15 +149,15 @@ impl<'a> Basis<'a> {
         model: &Model,
         meshed: &Meshed,
     ) -> Result<Self, BuildError> {
-        let scene = varied.scene();
+        let body = varied.scene();
         let (mesh, shapes) = (&*varied.assembled().mesh, &meshed.modes.shapes);
         let natural = meshed.modes.natural();
         let searched = (natural + BEYOND.max(natural / 2)).min(solver.available());
-        let mut known = solver.modes(searched, |_| ()).map_err(modal(scene))?;
+        let mut known = solver.modes(searched, |_| ()).map_err(modal(body))?;
         if known.whole(natural) != natural {
             let found = format!("{natural} modes of a body in joints, which part modes of one frequency");
             let expected = format!("{} of them", known.whole(natural));
-            return Err(scene
+            return Err(body
                 .refuse(
                     "modes.flexible",
                     found,
@@ -183,7 +183,7 @@ impl<'a> Basis<'a> {
         let momenta = solver.mass().product(fields.as_ref());
         let forces = matrices.stiffness() * &fields;
 
-        let markers = mesh_marker::on_mesh(scene, mesh, 3)?;
+        let markers = mesh_marker::on_mesh(body, mesh, 3)?;
         let on_markers = unit_forces(&markers, rows);
         let of_spin = centrifugal_accelerations(mesh.positions(), &origin);
         let (loads, of_loads) = load_forces(varied, matrices)?;
@@ -198,7 +198,7 @@ impl<'a> Basis<'a> {
         let all = [on_markers.as_ref(), spin.as_ref(), of_loads.as_ref()];
         let all = side_by_side(&all);
         let first_spin = on_markers.ncols();
-        let respond = solver.static_response_from(&known, all.as_ref(), StaticAccuracy::Full).map_err(modal(scene))?;
+        let respond = solver.static_response_from(&known, all.as_ref(), StaticAccuracy::Full).map_err(modal(body))?;
 
         let rigid = solver.rigid().shapes.as_ref();
         let statics = shapes.subcols(natural, shapes.ncols() - natural);
@@ -216,11 +216,11 @@ impl<'a> Basis<'a> {
         let chosen: Vec<usize> = (0..all.ncols()).filter(is_in).collect();
         let scales: Vec<f64> = chosen.iter().map(|k| 1.0 / norm(&respond, &m_responses, *k)).collect();
         let scaled = |of: &Mat<f64>| Mat::from_fn(of.nrows(), chosen.len(), |i, j| of[(i, chosen[j])] * scales[j]);
-        let of_responses = inverse(&scaled(&in_statics)).map_err(modal(scene))?;
+        let of_responses = inverse(&scaled(&in_statics)).map_err(modal(body))?;
         let missed = &scaled(&in_statics) * &of_responses - Mat::<f64>::identity(statics.ncols(), statics.ncols());
         if missed.norm_max() > BESIDE {
             let found = "static shapes that markers, loads and a spin do not make";
-            return Err(scene.refuse("modes", found, "a body in joints", "leave its numbers out").into());
+            return Err(body.refuse("modes", found, "a body in joints", "leave its numbers out").into());
         }
         let spins = |row: usize, k: usize| match k.checked_sub(first_spin) {
             Some(pair) if pair < of_spin.ncols() => of_spin[(row, pair)],
@@ -228,7 +228,7 @@ impl<'a> Basis<'a> {
         };
         Ok(Self {
             solver,
-            scene,
+            scene: body,
             mesh,
             natural,
             of_modes: scaled(&in_modes) * &of_responses * Scale(-1.0),

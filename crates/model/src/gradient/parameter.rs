@@ -1,7 +1,7 @@
 //! Numbers of a scene that rates are found with.
 
 use fem_tet10::{BodyNumber, Material, Materials};
-use scene::{Body, MeshedBody, Scene, SceneError, key_path, one_of};
+use scene::{Body, BodySource, MeshedBody, SceneError, key_path, one_of};
 
 /// Names of the axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -23,9 +23,9 @@ impl Parameter {
     ///
     /// # Errors
     /// The refusal of a body that is not made of elements with materials.
-    pub fn all(scene: &Scene) -> Result<Vec<Self>, SceneError> {
-        let body = meshed(scene)?;
-        let in_file = |key: String, number: BodyNumber| Self { name: scene.place(&key).key, number };
+    pub fn all(given: &Body) -> Result<Vec<Self>, SceneError> {
+        let body = meshed(given)?;
+        let in_file = |key: String, number: BodyNumber| Self { name: given.place(&key).key, number };
         let mut all = Vec::new();
         let mut of_material = |key: &str, group: Option<String>| {
             let numbers = [
@@ -50,8 +50,8 @@ impl Parameter {
     ///
     /// # Errors
     /// A name that the scene does not have, or has twice; as [`all`](Self::all).
-    pub fn named(scene: &Scene, names: &[String]) -> Result<Vec<Self>, SceneError> {
-        let all = Self::all(scene)?;
+    pub fn named(body: &Body, names: &[String]) -> Result<Vec<Self>, SceneError> {
+        let all = Self::all(body)?;
         if names.is_empty() {
             return Ok(all);
         }
@@ -59,7 +59,7 @@ impl Parameter {
             let refuse = |found: String, help: &str| {
                 let names: Vec<String> = all.iter().map(|parameter| parameter.name.clone()).collect();
                 let expected = format!("{}, or thickness.GROUP.z", one_of(&names));
-                Err(scene.refuse("body", found, expected, help))
+                Err(body.refuse("body", found, expected, help))
             };
             if names[..i].contains(name) {
                 return refuse(format!("the parameter {name} twice"), "name each parameter once");
@@ -73,8 +73,8 @@ impl Parameter {
     }
 
     /// Its value in a body.
-    pub fn value(&self, body: &MeshedBody) -> f64 {
-        let material = |group: &Option<String>| match (&body.materials, group) {
+    pub fn value(&self, meshed: &MeshedBody) -> f64 {
+        let material = |group: &Option<String>| match (&meshed.materials, group) {
             (Materials::Uniform(material), _) => Some(*material),
             (Materials::ByGroup(by_name), Some(name)) => by_name.get(name).copied(),
             (Materials::ByGroup(_), None) => None,
@@ -83,15 +83,15 @@ impl Parameter {
             BodyNumber::YoungModulus(group) => material(group).map(|material| material.young_modulus),
             BodyNumber::PoissonRatio(group) => material(group).map(|material| material.poisson_ratio),
             BodyNumber::Density(group) => material(group).map(|material| material.density),
-            BodyNumber::PointMass(i) => body.point_masses.get(*i).map(|mass| mass.mass),
+            BodyNumber::PointMass(i) => meshed.point_masses.get(*i).map(|mass| mass.mass),
             BodyNumber::Stretch(..) => Some(1.0),
         };
         value.unwrap_or(f64::NAN)
     }
 
     /// Gives it a value in a body; a stretch stays.
-    pub fn set(&self, body: &mut MeshedBody, value: f64) {
-        let mut material = |group: &Option<String>, set: fn(&mut Material, f64)| match (&mut body.materials, group) {
+    pub fn set(&self, meshed: &mut MeshedBody, value: f64) {
+        let mut material = |group: &Option<String>, set: fn(&mut Material, f64)| match (&mut meshed.materials, group) {
             (Materials::Uniform(material), _) => set(material, value),
             (Materials::ByGroup(by_name), Some(name)) => {
                 if let Some(material) = by_name.get_mut(name) {
@@ -105,7 +105,7 @@ impl Parameter {
             BodyNumber::PoissonRatio(group) => material(group, |material, value| material.poisson_ratio = value),
             BodyNumber::Density(group) => material(group, |material, value| material.density = value),
             BodyNumber::PointMass(i) => {
-                if let Some(mass) = body.point_masses.get_mut(*i) {
+                if let Some(mass) = meshed.point_masses.get_mut(*i) {
                     mass.mass = value;
                 }
             }
@@ -123,16 +123,16 @@ impl Parameter {
 ///
 /// # Errors
 /// The refusal of another one.
-pub(crate) fn meshed(scene: &Scene) -> Result<&MeshedBody, SceneError> {
-    let (key, found) = match &scene.body {
-        Body::Meshed(body) if body.tied_masses.is_empty() => return Ok(body),
-        Body::Meshed(_) => ("body.tied_masses", "masses beside the body, whose rates are not known"),
-        Body::File(_) => ("body.file", "a body file, whose numbers stay"),
-        Body::Matrices(_) => ("body.matrices", "a body of matrices, whose elements are not known"),
-        Body::Rigid(_) => ("body.rigid", "a rigid body, which has no natural frequencies"),
+pub(crate) fn meshed(body: &Body) -> Result<&MeshedBody, SceneError> {
+    let (key, found) = match &body.source {
+        BodySource::Meshed(meshed) if meshed.tied_masses.is_empty() => return Ok(meshed),
+        BodySource::Meshed(_) => ("body.tied_masses", "masses beside the body, whose rates are not known"),
+        BodySource::File(_) => ("body.file", "a body file, whose numbers stay"),
+        BodySource::Matrices(_) => ("body.matrices", "a body of matrices, whose elements are not known"),
+        BodySource::Rigid(_) => ("body.rigid", "a rigid body, which has no natural frequencies"),
     };
     let expected = "a body with a mesh and materials, whose numbers can change";
-    Err(scene.refuse(key, found, expected, "give the body its mesh: `mesh` and `material` in [body]"))
+    Err(body.refuse(key, found, expected, "give the body its mesh: `mesh` and `material` in [body]"))
 }
 
 /// The stretch of a name.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use fem_tet10::{BodyNumber, Location, Mesh, stretch};
 use modal::ModalError;
-use scene::{Measured, MeshedBody, Scene};
+use scene::{Body, Measured, MeshedBody};
 
 use crate::building::assembly::{Assembled, AssembledMesh};
 use crate::building::builder::Builder;
@@ -37,11 +37,11 @@ impl Builder {
     ///
     /// # Errors
     /// [`BuildError`]; a body that is not made of elements, or whose modes are about a bent one.
-    pub fn varied(&self, scene: &Scene, progress: impl FnMut(BuildProgress)) -> Result<VariedBody, BuildError> {
-        let body = meshed(scene)?.clone();
-        let needed = self.needed(scene);
+    pub fn varied(&self, given: &Body, progress: impl FnMut(BuildProgress)) -> Result<VariedBody, BuildError> {
+        let body = meshed(given)?.clone();
+        let needed = self.needed(given);
         let modes = needed.modes.flexible.most();
-        let refuse_at = |key: &str, found: &str, expected: &str, help: &str| scene.refuse(key, found, expected, help);
+        let refuse_at = |key: &str, found: &str, expected: &str, help: &str| given.refuse(key, found, expected, help);
         if modes == 0 {
             return Err(
                 refuse_at("modes.flexible", "no modes", "one flexible mode or more", "keep flexible modes").into()
@@ -51,14 +51,14 @@ impl Builder {
             let found = "modes about a bent body, whose rates are not known";
             return Err(refuse_at("modes.about", found, "modes about the undeformed body", "leave it out").into());
         }
-        let Assembled::Meshed(assembled) = self.assemble(scene, progress)?.0 else {
+        let Assembled::Meshed(assembled) = self.assemble(given, progress)?.0 else {
             return Err(refuse_at("body", "a rigid body", "a body with a mesh", "give the body a mesh").into());
         };
         let locate = |(name, at): (&String, &[f64; 3])| {
             let key = scene::key_path("output.points", name);
-            assembled.mesh.locate(*at).map_err(|error| refuse(scene, &key, error))
+            assembled.mesh.locate(*at).map_err(|error| refuse(given, &key, error))
         };
-        let points = scene.output.points.iter().map(locate).collect::<Result<_, _>>()?;
+        let points = given.output.points.iter().map(locate).collect::<Result<_, _>>()?;
         let assembled_mesh = Arc::clone(&assembled.mesh);
         let (assembled, mesh) = (Arc::from(assembled), assembled_mesh);
         Ok(VariedBody { assembled, mesh, body, points, modes })
@@ -84,7 +84,7 @@ impl VariedBody {
     ///
     /// # Errors
     /// [`BuildError`] of elements that do not survive it, and of point masses that are spread over a radius.
-    pub fn stretched(&self, body: &MeshedBody, factors: &[(&Parameter, f64)]) -> Result<Self, BuildError> {
+    pub fn stretched(&self, meshed: &MeshedBody, factors: &[(&Parameter, f64)]) -> Result<Self, BuildError> {
         let (scene, first) = (self.scene(), &self.assembled.mesh);
         let mut parts = first.parts();
         for (parameter, factor) in factors {
@@ -94,8 +94,8 @@ impl VariedBody {
                 x.iter_mut().zip(v).for_each(|(x, v)| *x += (factor - 1.0) * v);
             }
         }
-        let mut body = body.clone();
-        for (i, mass) in body.point_masses.iter_mut().enumerate() {
+        let mut meshed = meshed.clone();
+        for (i, mass) in meshed.point_masses.iter_mut().enumerate() {
             let key = format!("body.point_masses[{i}]");
             if mass.spread.is_some() {
                 let found = "a mass that nodes within a radius carry, in a mesh that is stretched";
@@ -109,11 +109,11 @@ impl VariedBody {
         }
         let mesh = Arc::new(Mesh::new(parts)?);
         let (assembled, points, modes) = (Arc::clone(&self.assembled), self.points.clone(), self.modes);
-        Ok(Self { assembled, mesh, body, points, modes })
+        Ok(Self { assembled, mesh, body: meshed, points, modes })
     }
 
     /// The scene.
-    pub fn scene(&self) -> &Scene {
+    pub fn scene(&self) -> &Body {
         &self.assembled.scene
     }
 
@@ -126,9 +126,9 @@ impl VariedBody {
     ///
     /// # Errors
     /// [`BuildError`] of numbers out of their range, and of the modes.
-    pub fn rates(&self, body: &MeshedBody, parameters: &[Parameter], of: RatesOf) -> Result<BodyRates, BuildError> {
+    pub fn rates(&self, meshed: &MeshedBody, parameters: &[Parameter], of: RatesOf) -> Result<BodyRates, BuildError> {
         let (AssembledMesh { support, scene, .. }, mesh) = (&*self.assembled, &*self.mesh);
-        let matrices = FeMatrices::Assembled(matrices(scene, body, mesh)?);
+        let matrices = FeMatrices::Assembled(matrices(scene, meshed, mesh)?);
         let solver = self.assembled.solver(&matrices, mesh.positions()).map_err(modal(scene))?;
         if self.modes > solver.available() {
             let (requested, available) = (self.modes, solver.available());
@@ -142,7 +142,7 @@ impl VariedBody {
             assembled: &self.assembled,
             mesh,
             points: &self.points,
-            body,
+            body: meshed,
             matrices: &matrices,
             solver: &solver,
             modes: &modes,

@@ -1,13 +1,13 @@
 //! Histories of a scene as functions of time.
 
 use dynamics::{Expression, SetupError, Table};
-use scene::{Formula, History, Interpolation, Place, Scene, TablePoints, key_path};
+use scene::{Body, Formula, History, Interpolation, Place, TablePoints, key_path};
 
 use crate::error::BuildError;
 
 /// A history through the run of a scene; `key` is its place there.
-pub(crate) fn history(scene: &Scene, key: &str, history: &History) -> Result<dynamics::History, BuildError> {
-    history_at((scene.time.end, &|key| scene.place(key)), key, history)
+pub(crate) fn history(body: &Body, key: &str, history: &History) -> Result<dynamics::History, BuildError> {
+    history_at((body.time.end, &|key| body.place(key)), key, history)
 }
 
 /// The same of a run with an end, whose scene shows places.

@@ -12,7 +12,7 @@ use modal::{ModalError, Modes, NodalMass};
 use nalgebra::Vector3;
 use reduced_body::{BodyPoint, ReducedBody};
 use rigid_kin::Attitude;
-use scene::{Choice, Load, LoadKind, LoadPlace, Scene};
+use scene::{Body, Choice, Load, LoadKind, LoadPlace};
 
 use crate::error::{BuildError, modal, refuse, refuse_mesh};
 use crate::load::directed::Directed;
@@ -384,13 +384,13 @@ impl MeshLoad {
     /// Change of a pressure as its surface moves; none of other loads.
     pub(crate) fn follower_change(
         &self,
-        scene: &Scene,
+        body: &Body,
         mesh: &Mesh,
-        body: &ReducedBody,
+        reduced: &ReducedBody,
         modes: &Modes,
     ) -> Result<Option<FollowerChange>, BuildError> {
         let Action::Field { nodes, forces, group, pressure } = &self.action else { return Ok(None) };
-        let nf = body.flexible();
+        let nf = reduced.flexible();
         let mut change = FollowerChange {
             force: vec![Vector3::zeros(); nf],
             moment: vec![Vector3::zeros(); nf],
@@ -399,10 +399,10 @@ impl MeshLoad {
         for k in 0..nf {
             let (_, changes) = mesh
                 .surface_pressure_change(group, modes.shapes.col(k))
-                .map_err(|error| refuse_mesh(scene, "loads", &error))?;
+                .map_err(|error| refuse_mesh(body, "loads", &error))?;
             for ((node, force), added) in nodes.iter().zip(forces).zip(&changes) {
                 let added = added * (*pressure * self.size);
-                let position = Vector3::from(mesh.positions()[*node as usize]) - body.origin;
+                let position = Vector3::from(mesh.positions()[*node as usize]) - reduced.origin;
                 change.force[k] += added;
                 change.moment[k] += self.shape(modes, *node, k).cross(&(force * self.size)) + position.cross(&added);
                 for a in 0..nf {
@@ -418,15 +418,15 @@ impl MeshLoad {
     /// that the modes are about.
     pub(crate) fn reduced(
         &self,
-        scene: &Scene,
+        body: &Body,
         (mesh, positions): (&Mesh, &[[f64; 3]]),
-        body: &ReducedBody,
+        reduced: &ReducedBody,
         modes: &Modes,
         stress: &[Directed],
         has_load_stiffness: bool,
     ) -> Result<SharedLoad, BuildError> {
         let frame = if self.follows { LoadFrame::Body } else { LoadFrame::Global };
-        let nf = body.flexible();
+        let nf = reduced.flexible();
         let history = self.history.clone();
         let second_order = || -> Result<Option<SecondOrder>, BuildError> {
             if stress.is_empty() {
@@ -439,23 +439,23 @@ impl MeshLoad {
             Ok(Some(SecondOrder::new(stress.iter().map(of_unit).collect())?))
         };
         let at = |point: &BodyPoint, force: Vector3<f64>| -> Result<SharedLoad, BuildError> {
-            let point = PointShapes::new(body, point);
+            let point = PointShapes::new(reduced, point);
             let point = match second_order()? {
                 Some(second_order) => point.with_second_order(second_order),
                 None => point,
             };
-            let turning = self.turning.as_ref().map(|patch| patch.shapes(self.dofs, body, modes));
+            let turning = self.turning.as_ref().map(|patch| patch.shapes(self.dofs, reduced, modes));
             let frame = if turning.is_some() { LoadFrame::Material } else { frame };
             Ok(Arc::new(PointForce { point, force, frame, turning, history: self.history.clone() }))
         };
         Ok(match &self.action {
             Action::Force { nodes, weights, force } => {
-                let point = modes.point(positions, nodes, weights).map_err(modal(scene))?;
+                let point = modes.point(positions, nodes, weights).map_err(modal(body))?;
                 at(&point, force * self.size)?
             }
-            Action::Weight { weight, force } => at(&weight.point(body, modes), force * self.size)?,
+            Action::Weight { weight, force } => at(&weight.point(reduced, modes), force * self.size)?,
             Action::Moment { patch, moment } => {
-                let rotation = patch.shapes(self.dofs, body, modes);
+                let rotation = patch.shapes(self.dofs, reduced, modes);
                 let rotation = match second_order()? {
                     Some(second_order) => rotation.with_second_order(second_order),
                     None => rotation,
@@ -464,14 +464,15 @@ impl MeshLoad {
                 Arc::new(PointMoment { rotation, moment: moment * self.size, frame, history })
             }
             Action::Field { nodes, forces, .. } => {
-                let position = |node: u32| Vector3::from(mesh.positions()[node as usize]) - body.origin;
+                let position = |node: u32| Vector3::from(mesh.positions()[node as usize]) - reduced.origin;
                 let acting = || nodes.iter().copied().zip(forces.iter().map(|force| force * self.size));
                 let force_body: Vector3<f64> = acting().map(|(_, f)| f).sum();
                 let moment_body: Vector3<f64> = acting().map(|(node, f)| position(node).cross(&f)).sum();
-                let rigid = [body.translation_basis.tr_mul(&force_body), body.rotation_basis.tr_mul(&moment_body)];
+                let rigid =
+                    [reduced.translation_basis.tr_mul(&force_body), reduced.rotation_basis.tr_mul(&moment_body)];
                 let flexible = (0..nf).map(|k| acting().map(|(node, f)| self.shape(modes, node, k).dot(&f)).sum());
                 let modal = rigid.iter().flat_map(|v| v.iter().copied()).chain(flexible).collect();
-                let change = self.follower_change(scene, mesh, body, modes)?;
+                let change = self.follower_change(body, mesh, reduced, modes)?;
                 let load_stiffness = change.as_ref().filter(|_| has_load_stiffness).map_or(Vec::new(), |change| {
                     change.load_stiffness.col_iter().flat_map(|c| c.iter().copied().collect::<Vec<_>>()).collect()
                 });

@@ -6,7 +6,7 @@ use fem_tet10::{Location, MeanRotation, Mesh};
 use modal::Modes;
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::ReducedBody;
-use scene::Scene;
+use scene::Body;
 
 use crate::error::{BuildError, refuse};
 
@@ -20,15 +20,15 @@ pub(crate) enum Rotation {
 
 impl Rotation {
     /// The rotation of the material at a point: of the node there where nodes have rotations, otherwise of the elements around it.
-    pub fn at(scene: &Scene, mesh: &Mesh, dofs: usize, key: &str, at: [f64; 3]) -> Result<Self, BuildError> {
+    pub fn at(body: &Body, mesh: &Mesh, dofs: usize, key: &str, at: [f64; 3]) -> Result<Self, BuildError> {
         if mesh.has_elements() {
-            return Ok(Self::Mean(mesh.mean_rotation(at, None).map_err(|error| refuse(scene, key, error))?));
+            return Ok(Self::Mean(mesh.mean_rotation(at, None).map_err(|error| refuse(body, key, error))?));
         }
-        let Location { nodes, .. } = mesh.locate(at).map_err(|error| refuse(scene, key, error))?;
+        let Location { nodes, .. } = mesh.locate(at).map_err(|error| refuse(body, key, error))?;
         if dofs == 6 {
             return Ok(Self::OfNode(nodes[0]));
         }
-        Err(scene
+        Err(body
             .refuse(
                 key,
                 "the rotation at a node of a body of matrices, whose nodes only have translations",

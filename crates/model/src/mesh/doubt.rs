@@ -3,7 +3,7 @@
 use std::fmt;
 
 use fem_tet10::{Material, Materials, Mesh, centroid_lumped_inertia};
-use scene::{Load, LoadKind, MeshedBody, Scene};
+use scene::{Body, Load, LoadKind, MeshedBody};
 
 /// Added mass over the mass of the mesh from which on it is told: a satellite's bus on its panels is below.
 const HEAVY: f64 = 100.0;
@@ -51,33 +51,33 @@ impl fmt::Display for Doubt {
 }
 
 /// Doubts about a scene whose body is made of these elements, and about loads of it.
-pub fn doubts(scene: &Scene, loads: &[Load], body: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
-    added_mass(body, mesh).into_iter().chain(deflections(scene, loads, body, mesh)).collect()
+pub fn doubts(body: &Body, loads: &[Load], meshed: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
+    added_mass(meshed, mesh).into_iter().chain(deflections(body, loads, meshed, mesh)).collect()
 }
 
-fn added_mass(body: &MeshedBody, mesh: &Mesh) -> Option<Doubt> {
-    let keys = match (body.point_masses.is_empty(), body.tied_masses.is_empty()) {
+fn added_mass(meshed: &MeshedBody, mesh: &Mesh) -> Option<Doubt> {
+    let keys = match (meshed.point_masses.is_empty(), meshed.tied_masses.is_empty()) {
         (false, true) => "body.point_masses",
         (true, _) => "body.tied_masses",
         (false, false) => "body.point_masses, body.tied_masses",
     };
-    let on_body = body.point_masses.iter().map(|mass| mass.mass);
-    let added: f64 = on_body.chain(body.tied_masses.iter().map(|mass| mass.mass)).sum();
+    let on_body = meshed.point_masses.iter().map(|mass| mass.mass);
+    let added: f64 = on_body.chain(meshed.tied_masses.iter().map(|mass| mass.mass)).sum();
     if added == 0.0 {
         return None;
     }
     // What is wrong with materials and groups is told by the assembly.
-    let own = centroid_lumped_inertia(mesh, &body.materials, &[]).ok()?.mass;
+    let own = centroid_lumped_inertia(mesh, &meshed.materials, &[]).ok()?.mass;
     (added > HEAVY * own).then_some(Doubt::AddedMass { keys, added, own })
 }
 
 /// Loads of a held body that would bend a solid bar of the size of its mesh far, which is of its stiffest and its lightest
 /// material and held at one end. A free body is bent by a part of that only.
-fn deflections(scene: &Scene, loads: &[Load], body: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
-    if scene.constraint.is_none() {
+fn deflections(body: &Body, loads: &[Load], meshed: &MeshedBody, mesh: &Mesh) -> Vec<Doubt> {
+    if body.constraint.is_none() {
         return Vec::new();
     }
-    let materials = |pick: fn(&Material) -> f64, better: fn(f64, f64) -> f64| match &body.materials {
+    let materials = |pick: fn(&Material) -> f64, better: fn(f64, f64) -> f64| match &meshed.materials {
         Materials::Uniform(material) => pick(material),
         Materials::ByGroup(each) => each.values().map(pick).reduce(better).unwrap_or(f64::NAN),
     };

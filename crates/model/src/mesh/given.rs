@@ -5,7 +5,7 @@ use keys::Hash;
 use matrix_import::{BodyMatrices, MatrixError, MatrixFiles, Which};
 use modal::{MassMatrix, ModalError, RigidModes};
 use reduced_body::{BodyError, RigidMotion};
-use scene::Scene;
+use scene::Body;
 
 use crate::error::{BuildError, modal};
 use crate::mesh::fe_matrices::FeMatrices;
@@ -37,9 +37,9 @@ pub struct MatrixChecks {
 
 impl Given {
     /// Reads the files and checks what a free body must have, whatever holds it in the scene.
-    pub fn read(scene: &Scene, files: &MatrixFiles) -> Result<Self, BuildError> {
+    pub fn read(body: &Body, files: &MatrixFiles) -> Result<Self, BuildError> {
         let BodyMatrices { labels, positions, groups, dofs, stiffness, mass, asymmetry, hash, notes } =
-            files.read().map_err(|error| refuse_file(scene, error))?;
+            files.read().map_err(|error| refuse_file(body, error))?;
         let of_group = |(name, nodes): (String, Vec<u32>)| NodeGroup {
             name,
             dimension: 0,
@@ -48,7 +48,7 @@ impl Given {
         let groups = groups.into_iter().map(of_group).collect();
         let nodes = Mesh::of_nodes(files.nodes.display().to_string(), labels, positions, groups)?;
 
-        let refuse = |error| refuse_matrix(scene, files, &nodes, error);
+        let refuse = |error| refuse_matrix(body, files, &nodes, error);
         let as_mass = MassMatrix::new(mass.as_ref(), nodes.positions().len()).map_err(refuse)?;
         let is_scalar_mass = matches!(as_mass, MassMatrix::Nodal(_));
         as_mass.check_semidefinite().map_err(refuse)?;
@@ -60,25 +60,25 @@ impl Given {
 }
 
 /// A file that cannot be used, at its key.
-fn refuse_file(scene: &Scene, error: MatrixError) -> BuildError {
+fn refuse_file(body: &Body, error: MatrixError) -> BuildError {
     match error {
         MatrixError::Refused { which, path, line, found, expected, help } => {
             let line = line.map_or_else(String::new, |line| format!(":{line}"));
             let found = format!("{found} in {}{line}", path.display());
-            scene.refuse(&format!("body.matrices.{}", which.name()), found, expected, help).into()
+            body.refuse(&format!("body.matrices.{}", which.name()), found, expected, help).into()
         }
-        MatrixError::Memory(error) => modal(scene)(error),
-        other => refused(scene, Which::Stiffness, other.to_string(), "matrices that can be read", "write them again"),
+        MatrixError::Memory(error) => modal(body)(error),
+        other => refused(body, Which::Stiffness, other.to_string(), "matrices that can be read", "write them again"),
     }
 }
 
 /// Error for matrices that could be read, at the key of the one at fault.
-pub(crate) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, error: ModalError) -> BuildError {
+pub(crate) fn refuse_matrix(body: &Body, files: &MatrixFiles, nodes: &Mesh, error: ModalError) -> BuildError {
     let name = |index: usize| nodes.node_tags().get(index).copied().unwrap_or_default();
     let (mass, stiffness) = (files.mass.display(), files.stiffness.display());
     match error {
         ModalError::NotFree { motion, relative, limit } => refused(
-            scene,
+            body,
             Which::Stiffness,
             format!("a body that is not free in {stiffness}: a rigid {motion} meets {relative:.1e} of the diagonal"),
             &format!("no stiffness against the six rigid motions (below {limit:.0e})"),
@@ -93,7 +93,7 @@ pub(crate) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
                 "a mass that is not positive definite in {mass}: some motion has a negative kinetic energy{place}"
             );
             let help = "look for a negative density, an element that is turned inside out, or the stiffness in place of the mass";
-            refused(scene, Which::Mass, found, "a mass that gives every motion a positive kinetic energy", help)
+            refused(body, Which::Mass, found, "a mass that gives every motion a positive kinetic energy", help)
         }
         ModalError::Body(BodyError::NoInertia { mass: total, inertia }) => {
             let found = format!(
@@ -102,24 +102,24 @@ pub(crate) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
             );
             let help =
                 "look for a density that is missing, or nodes in another unit of length or order than the matrices";
-            refused(scene, Which::Mass, found, "a mass and moments of inertia that are positive", help)
+            refused(body, Which::Mass, found, "a mass and moments of inertia that are positive", help)
         }
         ModalError::NoRigidBodyMass { what, relative, limit } => refused(
-            scene,
+            body,
             Which::Mass,
             format!("a mass that is none of a rigid body in {mass}: {what} is off by {relative:.1e}"),
             &format!("the same mass along every axis (to {limit:.0e})"),
             "write the mass of the whole model without *BOUNDARY and surrounding fluid; a mass along one axis only cannot move freely",
         ),
         ModalError::Loose { node, dof } => refused(
-            scene,
+            body,
             Which::Stiffness,
             format!("neither stiffness nor mass at degree of freedom {} of node {}", dof + 1, name(node)),
             "stiffness or mass at every degree of freedom",
             "leave the node out of the model, or give the element a stiffness against this motion (the drilling of shells)",
         ),
         ModalError::NegativeStiffness { eigenvalue, .. } => refused(
-            scene,
+            body,
             Which::Stiffness,
             format!(
                 "a stiffness that is not positive semi-definite in {stiffness}: its lowest eigenvalue is {eigenvalue:.3e}"
@@ -128,7 +128,7 @@ pub(crate) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
             "write K of the model without preload, contact and negative springs",
         ),
         ModalError::Mechanism { count, node, .. } => refused(
-            scene,
+            body,
             Which::Stiffness,
             format!(
                 "{count} motion(s) besides the rigid ones without stiffness in {stiffness}, the first of them largest at node {}",
@@ -138,16 +138,16 @@ pub(crate) fn refuse_matrix(scene: &Scene, files: &MatrixFiles, nodes: &Mesh, er
             "join the parts of the model, or give its elements a stiffness against this motion (the drilling of shells, hinges of beams)",
         ),
         ModalError::Indefinite { .. } => refused(
-            scene,
+            body,
             Which::Stiffness,
             format!("a stiffness that is not positive semi-definite in {stiffness}"),
             "a stiffness that resists every deformation",
             "write K of the model without preload, contact and negative springs",
         ),
-        other => modal(scene)(other),
+        other => modal(body)(other),
     }
 }
 
-fn refused(scene: &Scene, which: Which, found: String, expected: &str, help: &str) -> BuildError {
-    scene.refuse(&format!("body.matrices.{}", which.name()), found, expected, help).into()
+fn refused(body: &Body, which: Which, found: String, expected: &str, help: &str) -> BuildError {
+    body.refuse(&format!("body.matrices.{}", which.name()), found, expected, help).into()
 }

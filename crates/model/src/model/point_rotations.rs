@@ -3,7 +3,7 @@
 use dynamics::{Manifold, RotationShapes};
 use faer::Mat;
 use nalgebra::Vector3;
-use scene::Scene;
+use scene::Body;
 
 use crate::error::BuildError;
 use crate::load::rotation::Rotation;
@@ -21,7 +21,7 @@ impl Model {
     ///
     /// # Errors
     /// [`BuildError`] for a point that is not on the body, and without [`Self::has_point_rotations`].
-    pub fn point_rotations(&self, scene: &Scene) -> Result<Vec<RotationShapes>, BuildError> {
+    pub fn point_rotations(&self, given: &Body) -> Result<Vec<RotationShapes>, BuildError> {
         let body = self.physics.large_deflection.as_ref().map_or(&self.body, Manifold::body);
         let Some(meshed) = &self.meshed else {
             let rigid = || RotationShapes::new(body, Mat::zeros(3, 0).as_ref());
@@ -34,7 +34,7 @@ impl Model {
             Some(following) => meshed.following[(row, following)],
         };
         let turning = |(name, at): (&String, &[f64; 3])| {
-            let rotation = Rotation::at(scene, &meshed.mesh, dofs, &format!("output.points.{name}"), *at)?;
+            let rotation = Rotation::at(given, &meshed.mesh, dofs, &format!("output.points.{name}"), *at)?;
             let moved = |first: usize, k: usize| Vector3::from_fn(|axis, _| shape(first + axis, k));
             let of_shape = |k: usize| -> Vector3<f64> {
                 match &rotation {
@@ -48,7 +48,7 @@ impl Model {
             let turned: Vec<Vector3<f64>> = (0..body.flexible()).map(of_shape).collect();
             Ok(RotationShapes::new(body, Mat::from_fn(3, turned.len(), |axis, k| turned[k][axis]).as_ref()))
         };
-        scene.output.points.iter().map(turning).collect()
+        given.output.points.iter().map(turning).collect()
     }
 }
 

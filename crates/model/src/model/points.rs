@@ -1,15 +1,15 @@
 //! The points that a scene asks for, and those that are chosen where it names none.
 
 use nalgebra::Vector3;
-use scene::Scene;
+use scene::Body;
 
 use crate::error::BuildError;
 
 pub(crate) fn output_points<T>(
-    scene: &Scene,
+    body: &Body,
     point: impl Fn(String, [f64; 3]) -> Result<T, BuildError>,
 ) -> Result<Vec<(String, T)>, BuildError> {
-    let named = scene.output.points.iter();
+    let named = body.output.points.iter();
     named.map(|(name, at)| Ok((name.clone(), point(format!("output.points.{name}"), *at)?))).collect()
 }
 

@@ -1,7 +1,7 @@
 //! A body that rests in its frame, and its first order there.
 
 use dynamics::{AtRest, ConservativeBody, Equations, Initial, LoadedError, MotionState};
-use scene::Scene;
+use scene::Body;
 
 use crate::model::Model;
 
@@ -19,8 +19,8 @@ impl Model {
     ///
     /// # Errors
     /// [`LoadedError`].
-    pub fn rest(&self, scene: &Scene) -> Result<MotionState, LoadedError> {
-        let initial = self.initial(scene);
+    pub fn rest(&self, given: &Body) -> Result<MotionState, LoadedError> {
+        let initial = self.initial(given);
         let body = self.conservative(&initial)?;
         let AtRest { modal_displacement, .. } = body.at_rest(&initial, &self.small_amplitudes(), 0.0)?;
         let modal_velocity = vec![0.0; modal_displacement.len()];

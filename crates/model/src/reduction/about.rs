@@ -57,7 +57,8 @@ impl Reference {
 /// A sentence that proposes modes about a bent rest, where a steady spin or steady loads bend the body far and the scene takes its modes
 /// about the undeformed body.
 pub(crate) fn proposed(model: &MeshModel<'_, '_>, modes: &Modes, on: &ModalModel) -> Option<String> {
-    if model.scene.modes.about.is_some() || !model.scene.body.bends_far() || fits(model.scene, model.support).is_err() {
+    if model.scene.modes.about.is_some() || !model.scene.source.bends_far() || fits(model.scene, model.support).is_err()
+    {
         return None;
     }
     let steady = steady(model.scene, model.support, model.drive.as_ref(), About::Auto).ok()??;

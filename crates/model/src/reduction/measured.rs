@@ -2,7 +2,7 @@
 
 use dynamics::PointShapes;
 use reduced_body::{Constants, ReducedBody};
-use scene::{Measured, MeasuredMode, Scene};
+use scene::{Body, Measured, MeasuredMode};
 
 use crate::error::{BuildError, modal};
 
@@ -29,7 +29,7 @@ pub(crate) struct Seen<'a> {
 }
 
 /// The modes that take the numbers of the measured ones, by number from 0.
-pub(crate) fn matched(scene: &Scene, measured: &Measured, seen: &Seen<'_>) -> Result<Vec<usize>, BuildError> {
+pub(crate) fn matched(body: &Body, measured: &Measured, seen: &Seen<'_>) -> Result<Vec<usize>, BuildError> {
     let natural = seen.natural;
     if measured.places.is_empty() {
         if measured.modes.len() <= natural {
@@ -37,7 +37,7 @@ pub(crate) fn matched(scene: &Scene, measured: &Measured, seen: &Seen<'_>) -> Re
         }
         let found = format!("{} measured modes", measured.modes.len());
         let expected = format!("at most {natural}, the natural modes of the model");
-        return Err(scene.refuse(KEY, found, expected, "keep more modes, or leave lines out").into());
+        return Err(body.refuse(KEY, found, expected, "keep more modes, or leave lines out").into());
     }
     // Rows of the shapes at the places: a list of the modes for each.
     let mut rows = Vec::new();
@@ -45,7 +45,7 @@ pub(crate) fn matched(scene: &Scene, measured: &Measured, seen: &Seen<'_>) -> Re
         let Some(point) = seen.points.iter().position(|point| point == name) else {
             let expected = format!("one of {}", seen.points.join(", "));
             let help = "give the point in [output] `points`";
-            return Err(scene.refuse(KEY, format!("a shape at the point `{name}`"), expected, help).into());
+            return Err(body.refuse(KEY, format!("a shape at the point `{name}`"), expected, help).into());
         };
         rows.push((0..natural).map(|k| (seen.displacement)(point, *axis, k)).collect::<Vec<f64>>());
     }
@@ -65,14 +65,14 @@ pub(crate) fn matched(scene: &Scene, measured: &Measured, seen: &Seen<'_>) -> Re
             let alike = best.map_or(0.0, |(_, alike)| alike);
             let found = format!("the shape of line {line}, whose MAC with the mode most like it is {alike:.2}");
             let expected = format!("{ALIKE} or more");
-            return Err(scene
+            return Err(body
                 .refuse(KEY, found, expected, "correct the shape, measure at more points, or keep more modes")
                 .into());
         };
         if let Some(before) = taken.iter().position(|of| *of == k) {
             let found = format!("lines {} and {line}, both most like mode {}", measured.modes[before].line, k + 1);
             let help = "leave one of them out, or measure at more points";
-            return Err(scene.refuse(KEY, found, "a mode of its own for each line", help).into());
+            return Err(body.refuse(KEY, found, "a mode of its own for each line", help).into());
         }
         taken.push(k);
     }
@@ -81,16 +81,16 @@ pub(crate) fn matched(scene: &Scene, measured: &Measured, seen: &Seen<'_>) -> Re
 
 /// The body with the frequencies that the scene has measured, and its damping ratios with the measured ones among them.
 pub(crate) fn as_measured(
-    scene: &Scene,
-    body: ReducedBody,
+    body: &Body,
+    reduced: ReducedBody,
     (points, peaks): (&[(String, PointShapes)], &[f64]),
     has_large: bool,
     damping_ratios: &mut [f64],
 ) -> Result<ReducedBody, BuildError> {
-    let Some(measured) = &scene.modes.measured else { return Ok(body) };
+    let Some(measured) = &body.modes.measured else { return Ok(reduced) };
     if has_large {
         let found = "measured frequencies of a body with large modes, whose frequencies follow their amplitudes";
-        return Err(scene
+        return Err(body
             .refuse(KEY, found, "modes that are small", "set `large_deflection = false` in [effects]")
             .into());
     }
@@ -99,9 +99,9 @@ pub(crate) fn as_measured(
         shapes.columns()[RIGID + mode][axis]
     };
     let names = points.iter().map(|(name, _)| name.as_str()).collect();
-    let seen = Seen { natural: body.natural_modes, points: names, displacement: &displacement, peaks };
-    let modes = matched(scene, measured, &seen)?;
-    let mut circular_frequencies = body.circular_frequencies.clone();
+    let seen = Seen { natural: reduced.natural_modes, points: names, displacement: &displacement, peaks };
+    let modes = matched(body, measured, &seen)?;
+    let mut circular_frequencies = reduced.circular_frequencies.clone();
     for (k, mode) in modes.into_iter().zip(&measured.modes) {
         let (of_model, line) = (circular_frequencies[k] / std::f64::consts::TAU, mode.line);
         let ratio = mode.frequency / of_model;
@@ -109,7 +109,7 @@ pub(crate) fn as_measured(
             let (frequency, number) = (mode.frequency, k + 1);
             let found = format!("{frequency} in line {line}, for mode {number} of the model, which has {of_model:.6}");
             let help = "give cycles per time and not rad, let lines follow the order of the modes or have shapes, or mend the model";
-            return Err(scene
+            return Err(body
                 .refuse(KEY, found, format!("a frequency that is off by less than {OFF} times"), help)
                 .into());
         }
@@ -118,5 +118,5 @@ pub(crate) fn as_measured(
             damping_ratios[k] = ratio;
         }
     }
-    ReducedBody::from_constants(Constants { circular_frequencies, ..(*body).clone() }).map_err(modal(scene))
+    ReducedBody::from_constants(Constants { circular_frequencies, ..(*reduced).clone() }).map_err(modal(body))
 }

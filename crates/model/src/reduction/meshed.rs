@@ -11,7 +11,7 @@ use fem_tet10::{Location, Mesh};
 use modal::Modes;
 use nalgebra::Vector3;
 use reduced_body::ReducedBody;
-use scene::{Choice, Frame, Scene};
+use scene::{Body, Choice, Frame};
 
 use crate::building::assembly::AssembledMesh;
 use crate::building::progress::{BuildProgress, BuildTimes, timed};
@@ -188,7 +188,7 @@ fn points(
 }
 
 /// R, P and Q of the scene, or three nodes that lie far from each other, from the origin of the body.
-fn reference_points(scene: &Scene, mesh: &Mesh, body: &ReducedBody) -> [Vector3<f64>; 3] {
+fn reference_points(scene: &Body, mesh: &Mesh, body: &ReducedBody) -> [Vector3<f64>; 3] {
     match scene.frame {
         Some(Frame { r, p, q }) => [r, p, q],
         None => well_spread(mesh.positions(), &body.center_of_mass),

@@ -27,7 +27,7 @@ pub(crate) fn may_spin(scene: &Needed<'_>, motion: RigidMotion, drive: Option<&D
 
 /// True if the stress of loads and drives may stiffen the body.
 pub(crate) fn may_stress(scene: &Needed<'_>) -> bool {
-    scene.body.has_elements()
+    scene.source.has_elements()
         && scene.effects.choices[Effect::GeometricStiffening] != Choice::Off
         && scene.method().abilities.geometric_stiffening
 }
@@ -80,7 +80,7 @@ pub(crate) fn in_joints(scene: &Needed<'_>, mut advice: Advice) -> Advice {
     let is_missing = |effect: &Effect| *effect == Effect::Gravity && !scene.loads.iter().any(Load::is_gravity);
     let has_modes = !advice.modes.is_empty();
     let flexibility = Some(Effect::Flexibility).filter(|_| has_modes);
-    let stiffening = Some(Effect::GeometricStiffening).filter(|_| has_modes && scene.body.has_elements());
+    let stiffening = Some(Effect::GeometricStiffening).filter(|_| has_modes && scene.source.has_elements());
     let called_for = scene.on_under_unknown_forces().into_iter().filter(|effect| !is_missing(effect));
     for effect in called_for.chain(flexibility).chain(stiffening) {
         let row = &mut advice.effects[effect];
@@ -115,7 +115,7 @@ pub(crate) fn bent_modes(scene: &Needed<'_>, advice: &Advice, keep: usize, natur
     let first = |count: usize| (0..keep.min(count)).collect();
     let large: Vec<usize> = match (scene.effects.choices[Effect::LargeDeflection], &scene.modes.large) {
         (Choice::Off, _) => Vec::new(),
-        _ if !scene.body.bends_far() => Vec::new(),
+        _ if !scene.source.bends_far() => Vec::new(),
         (Choice::Auto, _) if !scene.method().abilities.large_deflection => Vec::new(),
         (_, Some(Large::Count(count))) => first(*count),
         (_, Some(Large::List(list))) => list.iter().map(|mode| mode - 1).filter(|k| *k < keep).collect(),

@@ -156,7 +156,7 @@ impl Reduction {
             has_large_modes: large.is_some(),
         };
         let mut advice = advice.completed(findings);
-        if !model.scene.body.has_elements() {
+        if !model.scene.source.has_elements() {
             for effect in [Effect::GeometricStiffening, Effect::LargeDeflection] {
                 let row = &mut advice.effects[effect];
                 if row.on {

@@ -93,7 +93,7 @@ fn to_markers(model: &MeshModel<'_, '_>, modes: &Modes, modal: &ModalModel) -> R
 /// True if the stress of the spin may matter, and is to be computed.
 fn may_stiffen(model: &MeshModel<'_, '_>, modal: &ModalModel) -> Result<bool, BuildError> {
     let &MeshModel { scene, support, .. } = model;
-    let has_none = modal.body.flexible() == 0 || !scene.body.has_elements();
+    let has_none = modal.body.flexible() == 0 || !scene.source.has_elements();
     if has_none || scene.effects.choices[Effect::DeformedInertia] == Choice::Off {
         return Ok(false);
     }

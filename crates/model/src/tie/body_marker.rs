@@ -4,7 +4,7 @@ use dynamics::{Manifold, PointShapes, RotationShapes};
 use faer::Mat;
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody};
-use scene::{Constraint, Marker, MarkerAxes, MarkerPlace, Scene};
+use scene::{Body, Constraint, Marker, MarkerAxes, MarkerPlace};
 
 use crate::error::BuildError;
 use crate::tie::warp::Warp;
@@ -79,24 +79,24 @@ pub(crate) fn perpendicular(z: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// The markers of a rigid body without a mesh.
-pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<BodyMarker>, BuildError> {
+pub(crate) fn on_rigid(body: &Body, reduced: &ReducedBody) -> Result<Vec<BodyMarker>, BuildError> {
     let on_body = |marker: &Marker| {
         let at = match &marker.place {
             MarkerPlace::Point(at) => *at,
             MarkerPlace::Held { constraint: Constraint::Pin { at, .. }, .. } => *at,
             MarkerPlace::Held { constraint: Constraint::Hinge { line, .. }, .. } => line.at(),
-            MarkerPlace::Held { constraint: Constraint::Slider { .. }, .. } => body.center_of_mass.into(),
+            MarkerPlace::Held { constraint: Constraint::Slider { .. }, .. } => reduced.center_of_mass.into(),
             MarkerPlace::Held { .. } | MarkerPlace::Region(_) => {
                 let help = "give it a point, `at = [x, y, z]`";
                 let (found, expected) = ("a part of a mesh", "none, since the body has no mesh");
-                return Err(scene.refuse(&marker.key(), found, expected, help).into());
+                return Err(body.refuse(&marker.key(), found, expected, help).into());
             }
         };
-        let point = BodyPoint { position_body: Vector3::from(at) - body.origin, shapes: Mat::zeros(3, 0) };
+        let point = BodyPoint { position_body: Vector3::from(at) - reduced.origin, shapes: Mat::zeros(3, 0) };
         Ok(BodyMarker {
             name: marker.name.clone(),
-            point: PointShapes::new(body, &point),
-            turning: RotationShapes::new(body, Mat::zeros(3, 0).as_ref()),
+            point: PointShapes::new(reduced, &point),
+            turning: RotationShapes::new(reduced, Mat::zeros(3, 0).as_ref()),
             parts: Vec::new(),
             by_nodes: false,
             warp: None,
@@ -104,5 +104,5 @@ pub(crate) fn on_rigid(scene: &Scene, body: &ReducedBody) -> Result<Vec<BodyMark
             unknown_turns: UnknownTurns::None,
         })
     };
-    scene.markers.iter().map(on_body).collect()
+    body.markers.iter().map(on_body).collect()
 }

@@ -6,7 +6,7 @@ use faer::prelude::ReborrowMut;
 use faer::{Mat, MatRef, Scale};
 use fem_tet10::{Location, Mesh, Patch, Strip};
 use nalgebra::{Matrix3, Vector3};
-use scene::{Constraint, HeldDirections, Marker, MarkerPlace, Region, Scene, Tie, key_path};
+use scene::{Body, Constraint, HeldDirections, Marker, MarkerPlace, Region, Tie, key_path};
 
 use crate::error::{BuildError, refuse, refuse_mesh};
 use crate::load::rotation::Rotation;
@@ -45,8 +45,8 @@ pub(crate) struct MeshMarker {
 }
 
 /// The markers of a scene on its mesh.
-pub(crate) fn on_mesh(scene: &Scene, mesh: &Mesh, dofs: usize) -> Result<Vec<MeshMarker>, BuildError> {
-    scene.markers.iter().map(|marker| MeshMarker::new(scene, mesh, dofs, marker)).collect()
+pub(crate) fn on_mesh(body: &Body, mesh: &Mesh, dofs: usize) -> Result<Vec<MeshMarker>, BuildError> {
+    body.markers.iter().map(|marker| MeshMarker::new(body, mesh, dofs, marker)).collect()
 }
 
 /// Forces (N×k) of unit forces and moments on each of the markers, side by side.
@@ -79,9 +79,9 @@ pub(crate) fn warps(markers: &[MeshMarker], mesh: &Mesh, responses: MatRef<'_, f
 /// out.
 pub(crate) fn reduced(
     markers: &[MeshMarker],
-    scene: &Scene,
+    body: &Body,
     mesh: &Mesh,
-    body: &ShapedBody<'_>,
+    shaped: &ShapedBody<'_>,
     stiffness: &[Mat<f64>],
     warps: &[Option<Warp>],
 ) -> Result<Vec<BodyMarker>, BuildError> {
@@ -90,7 +90,7 @@ pub(crate) fn reduced(
         let (own, others) = rest.split_at(rest.len().min(marker.loads().len()));
         rest = others;
         let warp = warps.get(number).cloned().flatten();
-        Ok(BodyMarker { warp, ..marker.reduced(scene, mesh, body, own)? })
+        Ok(BodyMarker { warp, ..marker.reduced(body, mesh, shaped, own)? })
     };
     markers.iter().enumerate().map(on_body).collect()
 }
@@ -103,7 +103,7 @@ struct Share {
 }
 
 impl MeshMarker {
-    fn new(scene: &Scene, mesh: &Mesh, dofs: usize, marker: &Marker) -> Result<Self, BuildError> {
+    fn new(body: &Body, mesh: &Mesh, dofs: usize, marker: &Marker) -> Result<Self, BuildError> {
         let key = marker.key();
         let (name, key_of_tie, axes) = (marker.name.clone(), marker.key_of_tie(), axes(marker.axes.as_ref()));
         let alone = |whole: Place| Self {
@@ -121,21 +121,21 @@ impl MeshMarker {
         let region = match &marker.place {
             MarkerPlace::Point(at) => {
                 let key = key_path(&key, "at");
-                let Location { nodes, weights } = mesh.locate(*at).map_err(|error| refuse(scene, &key, error))?;
+                let Location { nodes, weights } = mesh.locate(*at).map_err(|error| refuse(body, &key, error))?;
                 let rotation = match mesh.has_elements() || dofs == 6 {
-                    true => Some(Rotation::at(scene, mesh, dofs, &key, *at)?),
+                    true => Some(Rotation::at(body, mesh, dofs, &key, *at)?),
                     false => None,
                 };
                 return Ok(alone(Place::of_point(nodes, weights, rotation, mesh)));
             }
             MarkerPlace::Held { constraint, number } => {
-                let nodes = held_by(scene, mesh, (constraint, *number), dofs)?;
+                let nodes = held_by(body, mesh, (constraint, *number), dofs)?;
                 if let [node] = nodes[..] {
                     // A node with rotations holds the body by itself.
                     let rotation = (dofs == 6).then_some(Rotation::OfNode(node));
                     return Ok(alone(Place::of_point(vec![node], vec![1.0], rotation, mesh)));
                 }
-                let made = Self::of_nodes(scene, mesh, dofs, marker, nodes, alone)?;
+                let made = Self::of_nodes(body, mesh, dofs, marker, nodes, alone)?;
                 let place = match constraint {
                     Constraint::Pin { at, .. } => Vector3::from(*at),
                     Constraint::Hinge { line, .. } => {
@@ -153,25 +153,25 @@ impl MeshMarker {
         };
         match marker.tie {
             Tie::Mean => {
-                let whole = Place::of_patch(patch(scene, mesh, region, &key)?, mesh);
+                let whole = Place::of_patch(patch(body, mesh, region, &key)?, mesh);
                 Ok(Self { faces: faces(mesh, region), ..alone(whole) })
             }
             Tie::Patches { count, along } => {
-                let whole = Place::of_patch(patch(scene, mesh, region, &key)?, mesh);
-                let strips = strips(scene, mesh, region, &key, count, along)?;
+                let whole = Place::of_patch(patch(body, mesh, region, &key)?, mesh);
+                let strips = strips(body, mesh, region, &key, count, along)?;
                 let parts = strips.into_iter().map(|strip| (strip.part, Place::of_patch(strip.patch, mesh))).collect();
                 Ok(Self { parts, ..alone(whole) })
             }
             Tie::Nodes | Tie::Rigid => {
-                let nodes = region_nodes(scene, mesh, region, &key, 1)?;
-                Self::of_nodes(scene, mesh, dofs, marker, nodes, alone)
+                let nodes = region_nodes(body, mesh, region, &key, 1)?;
+                Self::of_nodes(body, mesh, dofs, marker, nodes, alone)
             }
         }
     }
 
     /// One whose nodes are tied one by one, or move as one rigid body.
     fn of_nodes(
-        scene: &Scene,
+        body: &Body,
         mesh: &Mesh,
         dofs: usize,
         marker: &Marker,
@@ -185,7 +185,7 @@ impl MeshMarker {
             let found = "a rigid part of a body whose nodes have rotations";
             let help = "give the nodes rigid elements where the matrices are made, and hold one of them";
             let expected = if is_held { "one node beside joints" } else { "`\"mean\"` or `\"nodes\"`" };
-            return Err(scene.refuse(&marker.key_of_tie(), found, expected, help).into());
+            return Err(body.refuse(&marker.key_of_tie(), found, expected, help).into());
         }
         if nodes.len() > MAX_NODES {
             let what = if is_rigid { "to move as one rigid body" } else { "to be tied one by one" };
@@ -197,7 +197,7 @@ impl MeshMarker {
                 }
                 false => "each takes three static shapes: take fewer nodes, or faces as `patches`, or `tie = \"mean\"`",
             };
-            return Err(scene.refuse(&marker.key_of_tie(), found, expected, help).into());
+            return Err(body.refuse(&marker.key_of_tie(), found, expected, help).into());
         }
         let part = 1.0 / nodes.len() as f64;
         let of_node = |node: &u32| (part, Place::of_point(vec![*node], vec![1.0], None, mesh));
@@ -257,9 +257,9 @@ impl MeshMarker {
     /// The marker on a body, which its loads stiffen so (nf×nf each).
     fn reduced(
         &self,
-        scene: &Scene,
+        body: &Body,
         mesh: &Mesh,
-        body: &ShapedBody<'_>,
+        shaped: &ShapedBody<'_>,
         stiffness: &[Mat<f64>],
     ) -> Result<BodyMarker, BuildError> {
         // Patterns are orthonormal: the parts are combined of them as they are of the parts.
@@ -280,9 +280,9 @@ impl MeshMarker {
             true => of_places[0].clone(),
             false => self.of_whole(&of_places),
         };
-        let (point, turning) = self.whole.shapes(scene, mesh, self.dofs, body, of_whole, &self.arm)?;
+        let (point, turning) = self.whole.shapes(body, mesh, self.dofs, shaped, of_whole, &self.arm)?;
         let of_part = |((_, place), stiffness): (&(f64, Place), Vec<Mat<f64>>)| {
-            let (point, turning) = place.shapes(scene, mesh, self.dofs, body, stiffness, &Vector3::zeros())?;
+            let (point, turning) = place.shapes(body, mesh, self.dofs, shaped, stiffness, &Vector3::zeros())?;
             Ok(MarkerPart { point, turning })
         };
         let parts = match self.is_rigid {
@@ -290,7 +290,7 @@ impl MeshMarker {
             false => self.parts.iter().zip(of_places).map(of_part).collect::<Result<_, BuildError>>()?,
         };
         // What does not deform is turned as the body is.
-        let unknown_turns = if body.body.flexible() == 0 { UnknownTurns::None } else { self.whole.unknown_turns };
+        let unknown_turns = if shaped.body.flexible() == 0 { UnknownTurns::None } else { self.whole.unknown_turns };
         let by_nodes = self.patterns.is_some() && !self.is_rigid;
         Ok(BodyMarker {
             name: self.name.clone(),
@@ -326,19 +326,19 @@ impl MeshMarker {
 }
 
 /// The faces in a part of the mesh as a patch; of a curve, or of matrices, which have no faces, the nodes, all alike.
-fn patch(scene: &Scene, mesh: &Mesh, region: &Region, key: &str) -> Result<Patch, BuildError> {
+fn patch(body: &Body, mesh: &Mesh, region: &Region, key: &str) -> Result<Patch, BuildError> {
     let of_nodes = |nodes: Vec<u32>| {
         let weights = vec![1.0 / nodes.len() as f64; nodes.len()];
         Patch::new(nodes, weights, mesh.positions())
     };
     let slack = ON * mesh.diagonal();
     let found = match region {
-        _ if !mesh.has_elements() => return Ok(of_nodes(region_nodes(scene, mesh, region, key, 1)?)),
+        _ if !mesh.has_elements() => return Ok(of_nodes(region_nodes(body, mesh, region, key, 1)?)),
         Region::Group(name) if mesh.surface_groups().any(|surface| surface == name) => {
-            return mesh.surface_patch(name).map_err(|error| refuse_mesh(scene, &key_path(key, "group"), &error));
+            return mesh.surface_patch(name).map_err(|error| refuse_mesh(body, &key_path(key, "group"), &error));
         }
         Region::Group(name) if mesh.groups().contains(name) => return Ok(volume_patch(mesh, name)),
-        Region::Group(_) => return Ok(of_nodes(region_nodes(scene, mesh, region, key, 1)?)),
+        Region::Group(_) => return Ok(of_nodes(region_nodes(body, mesh, region, key, 1)?)),
         Region::Ball { at, radius } => {
             let at = Vector3::from(*at);
             mesh.outer_patch(|x| (x - at).norm() <= radius + slack)
@@ -349,7 +349,7 @@ fn patch(scene: &Scene, mesh: &Mesh, region: &Region, key: &str) -> Result<Patch
     };
     found.ok_or_else(|| {
         let help = "make it larger, or give `at` alone for a point of the body";
-        scene.refuse(key, "a part of the body without a whole face in it", "faces of the body", help).into()
+        body.refuse(key, "a part of the body without a whole face in it", "faces of the body", help).into()
     })
 }
 
@@ -371,7 +371,7 @@ fn volume_patch(mesh: &Mesh, name: &str) -> Patch {
 
 /// The faces in a part of the mesh in strips.
 fn strips(
-    scene: &Scene,
+    body: &Body,
     mesh: &Mesh,
     region: &Region,
     key: &str,
@@ -382,13 +382,13 @@ fn strips(
     let faces = faces(mesh, region).filter(|faces| !faces.is_empty());
     let help = "remove `patches`, or name a physical surface, a `box` or a `radius` with faces of the body in it";
     let faces =
-        faces.ok_or_else(|| scene.refuse(&key_of, "patches of a marker without faces", "faces of the body", help))?;
+        faces.ok_or_else(|| body.refuse(&key_of, "patches of a marker without faces", "faces of the body", help))?;
     let along = match along {
         Some(along) => Vector3::from(along),
         None => mesh.longest(&faces).ok_or_else(|| {
             let found = "patches of faces that extend as far in two directions";
             let help = "add `along = [x, y, z]`, the direction from patch to patch";
-            scene.refuse(&key_of, found, "a direction to cut them along", help)
+            body.refuse(&key_of, found, "a direction to cut them along", help)
         })?,
     };
     let strips = mesh.strips(&faces, &along, count);
@@ -396,7 +396,7 @@ fn strips(
         true => Ok(strips),
         false => {
             let help = "give fewer patches, or another direction `along`";
-            Err(scene
+            Err(body
                 .refuse(&key_of, format!("{count} patches, one of them without faces"), "faces in each", help)
                 .into())
         }
@@ -422,7 +422,7 @@ pub(crate) fn faces(mesh: &Mesh, region: &Region) -> Option<Vec<[u32; 6]>> {
 
 /// The nodes that a constraint holds, of supports the first part.
 fn held_by(
-    scene: &Scene,
+    body: &Body,
     mesh: &Mesh,
     (constraint, number): (&Constraint, usize),
     dofs: usize,
@@ -430,9 +430,9 @@ fn held_by(
     match constraint {
         Constraint::Support { parts } => {
             let key = format!("constraints[{number}]");
-            let nodes = |part: &HeldDirections| region_nodes(scene, mesh, &part.region, &key, 1);
+            let nodes = |part: &HeldDirections| region_nodes(body, mesh, &part.region, &key, 1);
             Ok(parts.first().map(nodes).transpose()?.unwrap_or_default())
         }
-        _ => held_nodes(scene, mesh, constraint, dofs),
+        _ => held_nodes(body, mesh, constraint, dofs),
     }
 }

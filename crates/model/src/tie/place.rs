@@ -6,7 +6,7 @@ use fem_tet10::{MeanRotation, Mesh, Patch};
 use modal::Modes;
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::ReducedBody;
-use scene::Scene;
+use scene::Body;
 
 use crate::error::{BuildError, modal};
 use crate::load::rotation::Rotation;
@@ -118,14 +118,14 @@ impl Place {
     /// body, mesh axes.
     pub fn shapes(
         &self,
-        scene: &Scene,
+        given: &Body,
         mesh: &Mesh,
         dofs: usize,
         &ShapedBody { body, modes, is_bent }: &ShapedBody<'_>,
         stiffness: Vec<Mat<f64>>,
         arm: &Vector3<f64>,
     ) -> Result<(PointShapes, RotationShapes), BuildError> {
-        let mut point = modes.point(mesh.positions(), &self.nodes, &self.weights).map_err(modal(scene))?;
+        let mut point = modes.point(mesh.positions(), &self.nodes, &self.weights).map_err(modal(given))?;
         if let Some(rotation) = self.rotation.as_ref().filter(|_| *arm != Vector3::zeros()) {
             point.position_body += arm;
             for (mut shape, turned) in point.shapes.col_iter_mut().zip(rotation.by_mode(dofs, body, modes)) {

@@ -8,8 +8,8 @@ use dynamics::{
 };
 use nalgebra::{Matrix3, Vector3};
 use scene::{
-    AlongAndAbout, Bushing, Choice, CouplingKind, End, Joint, JointDrive, JointKind, JointSpring, Locked, Scene,
-    Spring, System,
+    AlongAndAbout, Body, Bushing, Choice, CouplingKind, End, Joint, JointDrive, JointKind, JointSpring, Locked, Scene,
+    Spring,
 };
 
 use crate::error::BuildError;
@@ -50,24 +50,24 @@ pub struct Tied {
 /// # Errors
 /// [`BuildError`] for a joint that would hold turns that its marker does not know, for histories, and for a body that is known
 /// to be wrong.
-pub fn tie(system: &System, models: &[Model]) -> Result<Vec<Tied>, BuildError> {
-    tie_models(system, &models.iter().collect::<Vec<_>>(), false)
+pub fn tie(scene: &Scene, models: &[Model]) -> Result<Vec<Tied>, BuildError> {
+    tie_models(scene, &models.iter().collect::<Vec<_>>(), false)
 }
 
 /// The same of models that are elsewhere. With `together` all bodies are one system, also those that nothing ties.
 ///
 /// # Errors
 /// As [`tie`].
-pub fn tie_models(system: &System, models: &[&Model], together: bool) -> Result<Vec<Tied>, BuildError> {
-    let systems = if together { vec![(0..models.len()).collect()] } else { islands_of(system, models.len()) };
-    systems.into_iter().map(|bodies| Island::new(system, models, bodies)?.tied()).collect()
+pub fn tie_models(scene: &Scene, models: &[&Model], together: bool) -> Result<Vec<Tied>, BuildError> {
+    let systems = if together { vec![(0..models.len()).collect()] } else { islands_of(scene, models.len()) };
+    systems.into_iter().map(|bodies| Island::new(scene, models, bodies)?.tied()).collect()
 }
 
 /// The physics of a body in a system: one at rest that nothing of its scene moves may be moved by others, and by laws from outside.
-pub fn physics_in_system(scene: &Scene, physics: &Physics) -> Physics {
+pub fn physics_in_system(body: &Body, physics: &Physics) -> Physics {
     let mut physics = physics.clone();
     for effect in [Effect::Translation, Effect::Rotation] {
-        physics.effects[effect] |= scene.effects.choices[effect] == Choice::Auto;
+        physics.effects[effect] |= body.effects.choices[effect] == Choice::Auto;
     }
     physics
 }
@@ -77,7 +77,7 @@ impl Tied {
     ///
     /// # Errors
     /// [`BuildError`] for a marker whose nodes do not tell all turns.
-    pub fn markers(&self, system: &System, models: &[&Model], between: [End; 2]) -> Result<[Marker; 2], BuildError> {
+    pub fn markers(&self, system: &Scene, models: &[&Model], between: [End; 2]) -> Result<[Marker; 2], BuildError> {
         let island = Island { scene: system, models, bodies: self.bodies.clone(), states: self.states.clone() };
         if let Some(i) = island.unknown_turns(between) {
             let key = format!("{}.markers", system.name_of(between[i]).split('.').next().unwrap_or_default());
@@ -88,21 +88,21 @@ impl Tied {
 }
 
 /// Numbers of the bodies of each system.
-fn islands_of(system: &System, bodies: usize) -> Vec<Vec<usize>> {
-    let System { joints, springs, bushings, .. } = system;
+fn islands_of(scene: &Scene, bodies: usize) -> Vec<Vec<usize>> {
+    let Scene { joints, springs, bushings, .. } = scene;
     let of_joints = joints.iter().map(|joint| joint.between);
     let of_elements = springs.iter().map(|spring| spring.between).chain(bushings.iter().map(|b| b.between));
     let pairs = of_joints.chain(of_elements).map(|between| between.map(|end| end.body()));
     // Joints that are coupled may have nothing but the ground in common.
     let first_body = |joint: usize| joints[joint].between.iter().find_map(End::body);
-    let coupled = system.couplings.iter().map(|coupling| coupling.kind.joints().map(first_body));
+    let coupled = scene.couplings.iter().map(|coupling| coupling.kind.joints().map(first_body));
     let pairs: Vec<_> = pairs.chain(coupled).collect();
     islands(bodies, &pairs)
 }
 
 /// Bodies that are connected, with what they are made of.
 struct Island<'a> {
-    scene: &'a System,
+    scene: &'a Scene,
     models: &'a [&'a Model],
     /// Numbers in the scene.
     bodies: Vec<usize>,
@@ -110,7 +110,7 @@ struct Island<'a> {
 }
 
 impl<'a> Island<'a> {
-    fn new(scene: &'a System, models: &'a [&'a Model], bodies: Vec<usize>) -> Result<Self, BuildError> {
+    fn new(scene: &'a Scene, models: &'a [&'a Model], bodies: Vec<usize>) -> Result<Self, BuildError> {
         let state = |number: &usize| {
             let (of_body, model) = (&scene.bodies[*number], models[*number]);
             if let Some(source) = model.refusal.filter(|_| of_body.effects.refuse) {

@@ -4,26 +4,26 @@ use std::path::Path;
 
 use model::{Builder, Checker, Model, StateCheck};
 use nonlinear::StateErrorSettings;
-use scene::Scene;
+use scene::Body;
 
 /// A body of a mesh of the verification in SI, clamped at its root.
 #[derive(Clone, Copy)]
-pub struct Body {
+pub struct Solid {
     pub mesh: &'static str,
     pub tip: [f64; 3],
     /// Axis of the spin through the origin.
     pub axis: [f64; 3],
 }
 
-pub const CONED: Body = Body { mesh: "rod", tip: [1.0, 0.0, 0.0], axis: [0.05, 0.0, 0.998749] };
-pub const BLADE: Body = Body { mesh: "swept_blade", tip: [0.0, 0.917722, 0.289357], axis: [1.0, 0.0, 0.0] };
-pub const ARC: Body = Body { mesh: "quarter_arc", tip: [0.0, 0.8, 0.8], axis: [1.0, 0.0, 0.0] };
-pub const BRACKET: Body = Body { mesh: "bracket", tip: [0.6, 0.5, 0.0], axis: [0.0, 0.0, 1.0] };
+pub const CONED: Solid = Solid { mesh: "rod", tip: [1.0, 0.0, 0.0], axis: [0.05, 0.0, 0.998749] };
+pub const BLADE: Solid = Solid { mesh: "swept_blade", tip: [0.0, 0.917722, 0.289357], axis: [1.0, 0.0, 0.0] };
+pub const ARC: Solid = Solid { mesh: "quarter_arc", tip: [0.0, 0.8, 0.8], axis: [1.0, 0.0, 0.0] };
+pub const BRACKET: Solid = Solid { mesh: "bracket", tip: [0.6, 0.5, 0.0], axis: [0.0, 0.0, 1.0] };
 
 pub const CLAMP: &str = "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n";
 
-impl Body {
-    pub fn parse(&self, modes: &str, rest: &str) -> Result<Scene, String> {
+impl Solid {
+    pub fn parse(&self, modes: &str, rest: &str) -> Result<Body, String> {
         let Self { mesh, tip, .. } = self;
         let text = format!(
             "title = \"Bent\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n[body]\n\
@@ -33,10 +33,10 @@ impl Body {
              [output.points]\ntip = {tip:?}\n[time]\nend = 1.0\nstep = 1e-4\n"
         );
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../verification/scene.toml");
-        Scene::parse(&text, path).map_err(|error| error.to_string())
+        Body::parse(&text, path).map_err(|error| error.to_string())
     }
 
-    pub fn scene(&self, modes: &str, rest: &str) -> Scene {
+    pub fn scene(&self, modes: &str, rest: &str) -> Body {
         self.parse(modes, rest).unwrap_or_else(|error| panic!("{error}"))
     }
 
@@ -68,17 +68,17 @@ impl Body {
 /// A history that does not change.
 pub const CONSTANT: &str = "{ kind = \"constant\" }";
 
-pub fn built(scene: &Scene) -> Model {
-    Model::build(scene, |_| ()).unwrap_or_else(|error| panic!("{error}"))
+pub fn built(body: &Body) -> Model {
+    Model::build(body, |_| ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The rest of a model, checked by the full body.
-pub fn checked(scene: &Scene, settings: &StateErrorSettings) -> (Model, StateCheck) {
-    let model = built(scene);
-    let motion = model.rest(scene).unwrap();
-    let full = Builder::default().full(scene, |_| ()).unwrap().unwrap();
+pub fn checked(body: &Body, settings: &StateErrorSettings) -> (Model, StateCheck) {
+    let model = built(body);
+    let motion = model.rest(body).unwrap();
+    let full = Builder::default().full(body, |_| ()).unwrap().unwrap();
     let full_body = full.body().unwrap();
-    let checker = Checker::new(&full, scene, &model, &full_body).unwrap();
+    let checker = Checker::new(&full, body, &model, &full_body).unwrap();
     let check = checker.check(&motion, &[], settings, true).unwrap();
     (model, check)
 }

@@ -5,12 +5,12 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 use model::{Builder, Checker, Model, StateCheck};
 use nonlinear::StateErrorSettings;
-use scene::{Marker, MarkerPlace, Scene, Tie};
+use scene::{Body, Marker, MarkerPlace, Tie};
 
 use crate::bodies::{BRACKET, CLAMP, CONED, CONSTANT, built};
 
 /// The bracket, held by nothing, in a spin about the axis across its plane: a principal one.
-fn spinning(modes: &str, spin: f64) -> Scene {
+fn spinning(modes: &str, spin: f64) -> Body {
     let initial = format!("[initial]\nangular_velocity = [0.0, 0.0, {spin:e}]\n");
     BRACKET.scene(modes, &initial)
 }
@@ -21,8 +21,8 @@ fn first() -> f64 {
 }
 
 /// The modal displacements with which a model rests in its frame in the spin of its start.
-fn resting(scene: &Scene, model: &Model) -> MotionState {
-    let initial = model.initial(scene);
+fn resting(given: &Body, model: &Model) -> MotionState {
+    let initial = model.initial(given);
     let body = ConservativeBody::new(&model.body, model.damping_ratios(), model.loads().to_vec(), &model.physics);
     let body = body.unwrap().beginning_at(&initial);
     let at = |q: &[f64]| MotionState {
@@ -61,13 +61,13 @@ fn resting(scene: &Scene, model: &Model) -> MotionState {
 }
 
 /// The rest of a model in its spin, checked by the full body.
-fn rest(scene: &Scene) -> (Model, StateCheck) {
-    let model = built(scene);
+fn rest(given: &Body) -> (Model, StateCheck) {
+    let model = built(given);
     let settings = StateErrorSettings { small: 0.0, max_factors: 12, ..StateErrorSettings::converged() };
-    let full = Builder::default().full(scene, |_| ()).unwrap().unwrap();
+    let full = Builder::default().full(given, |_| ()).unwrap().unwrap();
     let body = full.body().unwrap();
-    let checker = Checker::new(&full, scene, &model, &body).unwrap();
-    let check = checker.check(&resting(scene, &model), &[], &settings, false).unwrap();
+    let checker = Checker::new(&full, given, &model, &body).unwrap();
+    let check = checker.check(&resting(given, &model), &[], &settings, false).unwrap();
     (model, check)
 }
 
@@ -136,9 +136,9 @@ fn moments_at_both_ends_bend_a_free_rod() {
 /// momentum, too.
 #[test]
 fn a_free_body_goes_on_in_its_reference() {
-    let scene = spinning("about = \"spin\"\n", 0.5 * first());
-    let model = built(&scene);
-    let mut simulation = model.start(&scene).unwrap();
+    let body = spinning("about = \"spin\"\n", 0.5 * first());
+    let model = built(&body);
+    let mut simulation = model.start(&body).unwrap();
     let moved = |o: &dynamics::Observation| o.points[0].elastic_displacement_body;
     let begun = moved(&simulation.next().unwrap().unwrap());
     assert!(begun.norm() > 0.01);
@@ -166,12 +166,12 @@ fn a_body_with_markers_has_no_reference() {
     let pushed = format!("{CLAMP}{}", BRACKET.force([0.0, -1.0, 0.0], 30.0, CONSTANT));
     for (about, rest) in [("spin", "[initial]\nangular_velocity = [0.0, 0.0, 30.0]\n"), ("loads", &*pushed)] {
         let scene = BRACKET.scene(&format!("about = \"{about}\""), rest);
-        let marked = Scene { markers: vec![tip.clone()], ..scene };
+        let marked = Body { markers: vec![tip.clone()], ..scene };
         let refused = Model::build(&marked, |_| ()).unwrap_err().to_string();
         assert!(refused.contains("a body with markers") && refused.contains("remove `about`"), "{refused}");
     }
     let scene = BRACKET.scene("about = \"auto\"", &pushed);
-    let marked = Scene { markers: vec![tip], ..scene.clone() };
-    let has_reference = |scene: &Scene| built(scene).meshed.unwrap().reference.is_some();
+    let marked = Body { markers: vec![tip], ..scene.clone() };
+    let has_reference = |scene: &Body| built(scene).meshed.unwrap().reference.is_some();
     assert!(has_reference(&scene) && !has_reference(&marked));
 }

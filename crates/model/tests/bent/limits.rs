@@ -3,26 +3,26 @@
 use advice::{Refusal, RestOfBody};
 use model::Model;
 use nonlinear::StateErrorSettings;
-use scene::{Choice, Effect, Scene};
+use scene::{Body, Choice, Effect};
 
-use crate::bodies::{BLADE, Body, CLAMP, CONSTANT, built, checked};
+use crate::bodies::{BLADE, CLAMP, CONSTANT, Solid, built, checked};
 
-const COLUMN: Body = Body { mesh: "column", tip: [1.0, 0.0, 0.0], axis: [0.0, 0.0, 1.0] };
+const COLUMN: Solid = Solid { mesh: "column", tip: [1.0, 0.0, 0.0], axis: [0.0, 0.0, 1.0] };
 
-impl Body {
+impl Solid {
     /// The scene of a beginner: nothing is said of the model.
-    fn plain(&self, rest: &str) -> Scene {
-        let mut scene = self.scene("", rest);
-        scene.modes.static_correction = Choice::Auto;
-        scene.effects.refuse = true;
-        scene
+    fn plain(&self, rest: &str) -> Body {
+        let mut body = self.scene("", rest);
+        body.modes.static_correction = Choice::Auto;
+        body.effects.refuse = true;
+        body
     }
 }
 
 /// The tip's displacement in the full body, the relative error of the model's, and the number of directions in which the body has lost
 /// its stiffness.
-fn tip(scene: &Scene) -> (f64, f64, Option<usize>) {
-    let (_, check) = checked(scene, &StateErrorSettings::converged());
+fn tip(body: &Body) -> (f64, f64, Option<usize>) {
+    let (_, check) = checked(body, &StateErrorSettings::converged());
     let moved = check.points[0].displacement.iter().map(|u| u * u).sum::<f64>().sqrt();
     (moved, check.points[0].relative, check.negative_directions)
 }
@@ -32,11 +32,11 @@ fn tip(scene: &Scene) -> (f64, f64, Option<usize>) {
 #[test]
 fn a_swept_blade_is_not_refused_where_linear_modes_have_no_rest() {
     for (part, bound) in [(0.59, 0.002), (1.0, 0.01), (2.0, 0.04)] {
-        let scene = BLADE.plain(&BLADE.driven(part * BLADE.first()));
-        let model = built(&scene);
+        let body = BLADE.plain(&BLADE.driven(part * BLADE.first()));
+        let model = built(&body);
         assert_eq!(model.refusal, None, "at {part}");
-        assert!(model.start(&scene).is_ok(), "at {part}");
-        let (moved, error, negative) = tip(&scene);
+        assert!(model.start(&body).is_ok(), "at {part}");
+        let (moved, error, negative) = tip(&body);
         println!("blade at {part}: large {:?}, tip {moved:.4} m, off by {:.4} %", model.large_modes(), 100.0 * error);
         assert!(error < bound && negative == Some(0), "at {part}: {error} {negative:?}");
     }
@@ -45,11 +45,11 @@ fn a_swept_blade_is_not_refused_where_linear_modes_have_no_rest() {
 /// Independent reference: the rest of the full body by another way, the check of a model with large modes.
 #[test]
 fn a_model_without_a_rest_is_refused_with_that_of_the_full_body() {
-    let mut scene = BLADE.plain(&BLADE.driven(1.2 * BLADE.first()));
-    let (moved, ..) = tip(&scene);
-    scene.effects.choices[Effect::LargeDeflection] = Choice::Off;
-    scene.effects.choices[Effect::GeometricStiffening] = Choice::Off;
-    let model = built(&scene);
+    let mut body = BLADE.plain(&BLADE.driven(1.2 * BLADE.first()));
+    let (moved, ..) = tip(&body);
+    body.effects.choices[Effect::LargeDeflection] = Choice::Off;
+    body.effects.choices[Effect::GeometricStiffening] = Choice::Off;
+    let model = built(&body);
     let Some(Refusal::Indefinite { of_body: RestOfBody::Stable { displacement }, spin, critical, stiffening: false }) =
         model.refusal
     else {
@@ -58,10 +58,10 @@ fn a_model_without_a_rest_is_refused_with_that_of_the_full_body() {
     println!("rest of the full body: {displacement} {moved}");
     // The tip is the node that moves most but for corners of its face.
     assert!(spin > critical && (1.0..1.1).contains(&(displacement / moved)), "{displacement} {moved}");
-    let said = model.start(&scene).err().unwrap().to_string();
+    let said = model.start(&body).err().unwrap().to_string();
     assert!(said.contains("the full body of the mesh has a stable one"), "{said}");
-    scene.effects.refuse = false;
-    assert!(Model::build(&scene, |_| ()).unwrap().start(&scene).is_ok());
+    body.effects.refuse = false;
+    assert!(Model::build(&body, |_| ()).unwrap().start(&body).is_ok());
 }
 
 /// Closed form: the Euler load of a column, π² E I / (4 L²), of which a square section has two.

@@ -2,23 +2,23 @@
 
 use model::StateCheck;
 use nonlinear::StateErrorSettings;
-use scene::{Choice, Flexible, Large, Scene};
+use scene::{Body, Choice, Flexible, Large};
 
-use crate::bodies::{ARC, BLADE, BRACKET, Body, CLAMP, CONED, CONSTANT, built, checked};
+use crate::bodies::{ARC, BLADE, BRACKET, CLAMP, CONED, CONSTANT, Solid, built, checked};
 
-impl Body {
+impl Solid {
     /// Spinning at this multiple of its first frequency at rest.
-    fn spinning(&self, modes: &str, part: f64) -> Scene {
+    fn spinning(&self, modes: &str, part: f64) -> Body {
         self.scene(modes, &self.driven(part * self.first()))
     }
 
     /// Clamped under a constant dead force at its tip.
-    fn pushed(&self, modes: &str, force: [f64; 3]) -> Scene {
+    fn pushed(&self, modes: &str, force: [f64; 3]) -> Body {
         self.scene(modes, &format!("{CLAMP}{}", self.force(force, 1.0, CONSTANT)))
     }
 
     /// Clamped under gravity.
-    fn hanging(&self, modes: &str, gravity: f64) -> Scene {
+    fn hanging(&self, modes: &str, gravity: f64) -> Body {
         self.scene(
             modes,
             &format!("{CLAMP}[[loads]]\nkind = \"gravity\"\ndirection = [0.0, -1.0, 0.0]\namplitude = {gravity:e}\n"),
@@ -33,8 +33,8 @@ struct Rest {
 }
 
 impl Rest {
-    fn of(scene: &Scene) -> Self {
-        let (model, check) = checked(scene, &StateErrorSettings::converged());
+    fn of(body: &Body) -> Self {
+        let (model, check) = checked(body, &StateErrorSettings::converged());
         Self { large: model.large_modes().to_vec(), check }
     }
 
@@ -118,7 +118,7 @@ fn a_named_large_mode_is_the_one_of_the_rule() {
 #[test]
 fn slow_spins_shift_the_frequencies_of_a_bracket_as_they_should() {
     for axis in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
-        let bracket = Body { axis, ..BRACKET };
+        let bracket = Solid { axis, ..BRACKET };
         let clamp = "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n";
         let at_rest = Rest::of(&bracket.scene("", clamp)).check.frequencies;
         for (part, bound) in [(0.05, 0.004), (0.1, 0.01), (0.3, 0.12)] {
@@ -138,7 +138,7 @@ fn slow_spins_shift_the_frequencies_of_a_bracket_as_they_should() {
 const BENDING: f64 = 2e9 * 0.02 * 0.02 * 0.02 * 0.02 / 12.0;
 
 /// Clamped under a constant dead moment at the tip.
-fn twisted(body: &Body, direction: [f64; 3], moment: f64) -> Scene {
+fn twisted(body: &Solid, direction: [f64; 3], moment: f64) -> Body {
     let load = format!(
         "[[loads]]\nkind = \"moment\"\nat = {:?}\ndirection = {direction:?}\namplitude = {moment:e}\n\
          history = {CONSTANT}\n",
@@ -148,7 +148,7 @@ fn twisted(body: &Body, direction: [f64; 3], moment: f64) -> Scene {
 }
 
 /// The rod, whose end the moment turns by an angle, about.
-fn turned(angle: f64) -> Scene {
+fn turned(angle: f64) -> Body {
     twisted(&CONED, [0.0, 0.0, 1.0], angle * BENDING)
 }
 
@@ -182,10 +182,10 @@ fn a_moment_bends_an_arc_and_twists_a_rod() {
 #[test]
 fn a_rod_that_a_moment_swings_keeps_its_energy() {
     let errors = [2e-4, 1e-4].map(|step| {
-        let mut scene = turned(0.2);
-        (scene.time.control, scene.time.end) = (dynamics::StepControl::Fixed(step), 0.1);
-        let model = built(&scene);
-        let rows: Vec<_> = model.start(&scene).unwrap().map(Result::unwrap).collect();
+        let mut body = turned(0.2);
+        (body.time.control, body.time.end) = (dynamics::StepControl::Fixed(step), 0.1);
+        let model = built(&body);
+        let rows: Vec<_> = model.start(&body).unwrap().map(Result::unwrap).collect();
         let largest = |of: &dyn Fn(&dynamics::Observation) -> f64| rows.iter().map(of).fold(0.0, f64::max);
         let error = largest(&|row| (row.energy_balance() - rows[0].energy_balance()).abs());
         error / largest(&|row| row.strain_energy)
@@ -197,34 +197,34 @@ fn a_rod_that_a_moment_swings_keeps_its_energy() {
 /// With no more modes than are large, the answer is the static shape.
 #[test]
 fn the_answer_may_be_all_that_is_left() {
-    let mut scene = turned(0.2);
-    scene.modes.flexible = Flexible::Count(2);
-    let model = built(&scene);
+    let mut body = turned(0.2);
+    body.modes.flexible = Flexible::Count(2);
+    let model = built(&body);
     assert_eq!((model.large_modes(), model.static_answer()), (&[0, 1, 2][..], Some(2)));
     // Of one mode more, which is not large, and without a static shape: in its place.
-    (scene.modes.flexible, scene.modes.static_correction) = (Flexible::Count(3), Choice::Off);
-    scene.modes.large = Some(Large::List(vec![2, 3]));
-    let model = built(&scene);
+    (body.modes.flexible, body.modes.static_correction) = (Flexible::Count(3), Choice::Off);
+    body.modes.large = Some(Large::List(vec![2, 3]));
+    let model = built(&body);
     assert_eq!((model.large_modes(), model.static_answer()), (&[0, 1, 2][..], Some(0)));
 }
 
 /// Moments that go by several histories have no answer together.
 #[test]
 fn moments_that_act_one_after_the_other_have_no_answer() {
-    let mut scene = turned(0.2);
-    scene.loads.extend(turned(0.2).loads);
-    assert_eq!(built(&scene).static_answer(), Some(2));
-    scene.loads[1].history = dynamics::History::HalfSine { start: 0.05, duration: 0.01 };
-    assert_eq!(built(&scene).static_answer(), None);
+    let mut body = turned(0.2);
+    body.loads.extend(turned(0.2).loads);
+    assert_eq!(built(&body).static_answer(), Some(2));
+    body.loads[1].history = dynamics::History::HalfSine { start: 0.05, duration: 0.01 };
+    assert_eq!(built(&body).static_answer(), None);
 }
 
 /// Bodies whose loads are no moments, or are small beside others, have their modes as coordinates.
 #[test]
 fn the_answer_to_a_small_moment_is_no_coordinate() {
-    let mut scene = turned(0.01);
+    let mut body = turned(0.01);
     let force = CONED.scene("", &CONED.force([0.0, 1.0, 0.0], 10.0, CONSTANT));
-    scene.loads.extend(force.loads);
-    let model = built(&scene);
+    body.loads.extend(force.loads);
+    let model = built(&body);
     assert!(model.meshed.unwrap().modes.answer.is_none());
 }
 
@@ -233,13 +233,13 @@ fn the_answer_to_a_small_moment_is_no_coordinate() {
 /// frequency was 0.8 % too low.
 #[test]
 fn a_mode_that_stretches_the_body_is_not_large_by_itself() {
-    let mut scene = CONED.scene("", "[[loads]]\nkind = \"pressure\"\ngroup = \"all\"\namplitude = 1e6\n");
-    scene.effects.tolerance = 1e-9;
-    scene.modes.flexible = Flexible::Count(20);
-    scene.modes.static_correction = Choice::Off;
-    let model = built(&scene);
+    let mut body = CONED.scene("", "[[loads]]\nkind = \"pressure\"\ngroup = \"all\"\namplitude = 1e6\n");
+    body.effects.tolerance = 1e-9;
+    body.modes.flexible = Flexible::Count(20);
+    body.modes.static_correction = Choice::Off;
+    let model = built(&body);
     assert!(model.large_modes().is_empty(), "{:?}", model.large_modes());
-    let frequency = model.loaded_modes(&scene).unwrap()[0].circular_frequency / std::f64::consts::TAU;
+    let frequency = model.loaded_modes(&body).unwrap()[0].circular_frequency / std::f64::consts::TAU;
     assert!((frequency / 29.0332 - 1.0).abs() < 5e-4, "{frequency}");
 }
 
@@ -247,16 +247,16 @@ fn a_mode_that_stretches_the_body_is_not_large_by_itself() {
 /// 156.9388 Hz without pressure. The walls bulge as large modes by themselves: with their stress alone the tube had a quarter of the shift.
 #[test]
 fn the_walls_of_a_tube_are_large_by_themselves() {
-    let tube = Body { mesh: "tube", tip: [1.0, 0.0, 0.0], axis: [0.0, 0.0, 1.0] };
+    let tube = Solid { mesh: "tube", tip: [1.0, 0.0, 0.0], axis: [0.0, 0.0, 1.0] };
     for (pressure, expected) in [(5e5, 157.2063), (2e6, 158.0044)] {
         let load = format!("[[loads]]\nkind = \"pressure\"\ngroup = \"inside\"\namplitude = {pressure:e}\n");
-        let mut scene = tube.scene("", &load);
-        scene.effects.tolerance = 1e-9;
-        scene.modes.flexible = Flexible::Count(20);
-        scene.modes.static_correction = Choice::Off;
-        let model = built(&scene);
+        let mut body = tube.scene("", &load);
+        body.effects.tolerance = 1e-9;
+        body.modes.flexible = Flexible::Count(20);
+        body.modes.static_correction = Choice::Off;
+        let model = built(&body);
         assert_eq!(model.large_modes(), [5]);
-        let frequency = model.loaded_modes(&scene).unwrap()[0].circular_frequency / std::f64::consts::TAU;
+        let frequency = model.loaded_modes(&body).unwrap()[0].circular_frequency / std::f64::consts::TAU;
         assert!((frequency - expected).abs() < 0.01 * (expected - 156.9388), "{frequency}");
     }
 }

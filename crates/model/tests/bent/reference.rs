@@ -2,19 +2,19 @@
 
 use model::{Builder, Cache, Model, StateCheck};
 use nonlinear::{EquilibriumSettings, ExternalForces, StateErrorSettings, equilibrium, spin_vibrations};
-use scene::{FileBody, Scene};
+use scene::{Body, FileBody};
 
-use crate::bodies::{ARC, BLADE, Body, CLAMP, CONED, CONSTANT, built, checked};
+use crate::bodies::{ARC, BLADE, CLAMP, CONED, CONSTANT, Solid, built, checked};
 
-impl Body {
+impl Solid {
     /// In a spin, with modes about another one along its axis.
-    fn spinning_about(&self, modes: &str, spin: f64, about: f64) -> Scene {
+    fn spinning_about(&self, modes: &str, spin: f64, about: f64) -> Body {
         let about = self.axis.map(|a| about * a);
         self.scene(&format!("about = {{ angular_velocity = {about:?} }}\n{modes}"), &self.driven(spin))
     }
 
     /// Under a constant dead force at its tip, that the modes are about, and a change of it.
-    fn pushed_about(&self, modes: &str, force: [f64; 3], change: f64) -> Scene {
+    fn pushed_about(&self, modes: &str, force: [f64; 3], change: f64) -> Body {
         let change = self.force(force, change, "{ kind = \"table\", points = [[0.0, 1.0], [10.0, 1.0]] }");
         let steady = self.force(force, 1.0, CONSTANT);
         self.scene(&format!("about = {{ loads = true }}\n{modes}"), &format!("{CLAMP}{steady}{change}"))
@@ -22,14 +22,14 @@ impl Body {
 }
 
 /// The rest of a model, checked by the full body.
-fn rest(scene: &Scene) -> (Model, StateCheck) {
+fn rest(body: &Body) -> (Model, StateCheck) {
     // Two factors at least: after the first one the tangent is that of the linear stress.
     let settings = StateErrorSettings { small: 0.0, max_factors: 12, ..StateErrorSettings::converged() };
-    checked(scene, &settings)
+    checked(body, &settings)
 }
 
 /// Errors of the tip and of the first frequency, in percent.
-fn errors(name: &str, scene: &Scene) -> [f64; 2] {
+fn errors(name: &str, scene: &Body) -> [f64; 2] {
     let (model, check) = rest(scene);
     let tip = &check.points[0];
     let moved = tip.displacement.iter().map(|u| u * u).sum::<f64>().sqrt();
@@ -44,8 +44,8 @@ fn errors(name: &str, scene: &Scene) -> [f64; 2] {
 }
 
 #[track_caller]
-fn is_within(name: &str, scene: &Scene, [tip, frequency]: [f64; 2]) {
-    let found = errors(name, scene);
+fn is_within(name: &str, body: &Body, [tip, frequency]: [f64; 2]) {
+    let found = errors(name, body);
     assert!(found[0] <= tip && found[1] <= frequency, "{name}: {found:?} % instead of {tip} and {frequency}");
 }
 
@@ -117,10 +117,10 @@ fn vibrations_of_the_full_body_are_those_of_the_modes_about_it() {
 #[test]
 fn a_motion_begins_in_the_reference_and_stays_there() {
     let spin = BLADE.first();
-    let scene = BLADE.spinning_about("", spin, spin);
-    let model = built(&scene);
-    let (_, check) = rest(&scene);
-    let mut simulation = model.start(&scene).unwrap();
+    let body = BLADE.spinning_about("", spin, spin);
+    let model = built(&body);
+    let (_, check) = rest(&body);
+    let mut simulation = model.start(&body).unwrap();
     let mut last = simulation.next().unwrap().unwrap();
     let moved = |o: &dynamics::Observation| o.points[0].elastic_displacement_body;
     let (first, expected) = (moved(&last), nalgebra::Vector3::from(check.points[0].displacement));
@@ -173,26 +173,26 @@ fn a_spin_that_bends_the_body_far_calls_for_a_reference() {
 fn the_cache_and_a_body_file_carry_the_reference() {
     let folder = tempfile::tempdir().unwrap();
     let spin = BLADE.first();
-    let scene = BLADE.spinning_about("", spin, spin);
+    let body = BLADE.spinning_about("", spin, spin);
     let path = folder.path().join("blade.body.h5");
     let made = Builder::with_cache(Cache::new(folder.path().join("cache"), u64::MAX));
-    let first = made.build(&scene, |_| ()).unwrap();
-    made.write_body(&scene, &path, false, |_| ()).unwrap();
+    let first = made.build(&body, |_| ()).unwrap();
+    made.write_body(&body, &path, false, |_| ()).unwrap();
     let computed = made.cache.notes().computed;
-    let second = made.build(&scene, |_| ()).unwrap();
+    let second = made.build(&body, |_| ()).unwrap();
     assert_eq!(made.cache.notes().computed, computed, "nothing is computed again");
     let with_file = |about: f64| {
-        let mut scene = BLADE.spinning_about("", spin, about);
-        let scene::Body::Meshed(body) = scene.body.clone() else { panic!() };
-        scene.body = scene::Body::File(FileBody {
+        let mut body = BLADE.spinning_about("", spin, about);
+        let scene::BodySource::Meshed(meshed) = body.source.clone() else { panic!() };
+        body.source = scene::BodySource::File(FileBody {
             file: path.clone(),
             mesh: None,
-            mesh_size: body.mesh_size,
-            raise_order: body.raise_order,
+            mesh_size: meshed.mesh_size,
+            raise_order: meshed.raise_order,
             materials: None,
             point_masses: None,
         });
-        Model::build(&scene, |_| ())
+        Model::build(&body, |_| ())
     };
     let third = with_file(spin).unwrap();
     let constants = |model: &Model| {

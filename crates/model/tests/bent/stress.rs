@@ -4,9 +4,9 @@ use model::{BodyStressCheck, StateCheck};
 use nonlinear::StateErrorSettings;
 use scene::Choice;
 
-use crate::bodies::{ARC, BRACKET, Body, CLAMP, CONSTANT, checked};
+use crate::bodies::{ARC, BRACKET, CLAMP, CONSTANT, Solid, checked};
 
-impl Body {
+impl Solid {
     /// The rest under a dead force at its tip, with its stress.
     fn stressed(&self, force: [f64; 3], statics: Choice) -> (Vec<usize>, StateCheck) {
         let rest = format!("{CLAMP}{}[output]\npeak_stress = true\nstress = true\n", self.force(force, 1.0, CONSTANT));

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector3;
 
-use crate::{CLAMPED, Scene, bar, build, observations, point};
+use crate::{Body, CLAMPED, bar, build, observations, point};
 
 const END: f64 = 0.02;
 
 /// A clamped bar whose tip is hit for a time, across and a little along.
-fn hit(modes: &str, duration: f64, tolerance: f64) -> Scene {
+fn hit(modes: &str, duration: f64, tolerance: f64) -> Body {
     let rest = format!(
         "[effects]\ntolerance = {tolerance}\n{CLAMPED}[[loads]]\nkind = \"force\"\nat = [200.0, 0.0, 0.0]\n\
          direction = [0.1, 0.0, 1.0]\namplitude = 2.0\nhistory = {{ kind = \"half-sine\", duration = {duration:e} }}"
@@ -16,9 +16,9 @@ fn hit(modes: &str, duration: f64, tolerance: f64) -> Scene {
 }
 
 /// Path of the tip.
-fn path(scene: &Scene) -> (usize, Vec<Vector3<f64>>) {
-    let model = build(scene);
-    let rows = observations(scene, &model);
+fn path(body: &Body) -> (usize, Vec<Vector3<f64>>) {
+    let model = build(body);
+    let rows = observations(body, &model);
     (model.body.flexible(), rows.iter().map(|row| point(&model, row, "tip").displacement).collect())
 }
 

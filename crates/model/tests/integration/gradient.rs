@@ -1,7 +1,7 @@
 //! Rates of frequencies, effective masses and static answers with the numbers of a scene.
 
 use model::{BodyRates, Builder, Parameter, ParameterRates, RatesOf, VariedBody};
-use scene::Scene;
+use scene::Body;
 
 use crate::{CLAMPED, MASS, bar, close};
 
@@ -10,17 +10,17 @@ const LOADS: &str = "[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.3, -1.0]
                      [[loads]]\nkind = \"pressure\"\ngroup = \"top\"\namplitude = 0.01\n";
 
 /// The bar with two point masses, its root held and its tip propped, so that bending along y and along z are apart.
-fn loaded() -> Scene {
+fn loaded() -> Body {
     let held = "[[constraints]]\nkind = \"support\"\ngroup = \"root\"\ndirections = [\"x\", \"y\", \"z\"]\n\
                 [[constraints]]\nkind = \"support\"\ngroup = \"tip\"\ndirections = [\"y\"]\n";
     let scene = bar("flexible = 5", &format!("{held}{LOADS}"), TIME);
     let masses =
         "point_masses = [{ at = [200.0, 0.0, 0.0], mass = 1e-5 }, { at = [100.0, 3.0, 2.0], mass = 2e-5 }]\n[modes]";
-    Scene::parse(&scene.source.replace("[modes]", masses), &scene.path).unwrap()
+    Body::parse(&scene.text_alone.replace("[modes]", masses), &scene.path).unwrap()
 }
 
-fn varied(scene: &Scene) -> VariedBody {
-    Builder::default().varied(scene, |_| ()).unwrap_or_else(|error| panic!("{error}"))
+fn varied(body: &Body) -> VariedBody {
+    Builder::default().varied(body, |_| ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Numbers of a report that have rates, in a fixed order.
@@ -99,12 +99,12 @@ fn logarithmic_rates_of_a_bar_of_one_material_are_halves_and_ones() {
 /// Closed form: m f²  stays for a mass on a spring, so f ∝ m^−½ where the tip mass is far more than the bar.
 #[test]
 fn a_heavy_tip_makes_the_bar_a_spring() {
-    let scene = loaded();
-    let text = scene
-        .source
+    let body = loaded();
+    let text = body
+        .text_alone
         .replace("mass = 1e-5", "mass = 1.0")
         .replace("[100.0, 3.0, 2.0], mass = 2e-5", "[100.0, 0.0, 0.0], mass = 1e-9");
-    let varied = varied(&Scene::parse(&text, &scene.path).unwrap());
+    let varied = varied(&Body::parse(&text, &body.path).unwrap());
     let parameters = Parameter::named(varied.scene(), &["body.point_masses[0].mass".to_owned()]).unwrap();
     let found = varied.rates(varied.body(), &parameters, RatesOf::Frequencies).unwrap();
     for k in 0..2 {
@@ -131,18 +131,18 @@ fn bending_goes_with_the_thickness() {
 
 #[test]
 fn what_has_no_rates_is_refused_at_its_key() {
-    let scene = bar("flexible = 2", "", TIME);
-    let unknown = Parameter::named(&scene, &["body.material.colour".to_owned()]).unwrap_err().to_string();
+    let body = bar("flexible = 2", "", TIME);
+    let unknown = Parameter::named(&body, &["body.material.colour".to_owned()]).unwrap_err().to_string();
     assert!(unknown.contains("body.material.colour") && unknown.contains("body.material.density"), "{unknown}");
-    let twice = Parameter::named(&scene, &["thickness.z".to_owned(), "thickness.z".to_owned()]).unwrap_err();
+    let twice = Parameter::named(&body, &["thickness.z".to_owned(), "thickness.z".to_owned()]).unwrap_err();
     assert!(twice.to_string().contains("twice"), "{twice}");
     for (from, to, says) in [
         ("flexible = 2", "flexible = 0", "modes.flexible"),
         ("flexible = 2", "flexible = 2\nabout = { angular_velocity = [0.0, 0.0, 10.0] }", "modes.about"),
     ] {
-        let text = scene.source.replace(from, to).replace("[time]", &format!("{CLAMPED}[time]"));
-        let scene = Scene::parse(&text, &scene.path).unwrap();
-        let refused = Builder::default().varied(&scene, |_| ()).err().map(|error| error.to_string());
+        let text = body.text_alone.replace(from, to).replace("[time]", &format!("{CLAMPED}[time]"));
+        let body = Body::parse(&text, &body.path).unwrap();
+        let refused = Builder::default().varied(&body, |_| ()).err().map(|error| error.to_string());
         assert!(refused.as_ref().is_some_and(|message| message.contains(says)), "{refused:?}");
     }
     let rigid = crate::rigid("", "end = 1.0\nstep = 0.1");

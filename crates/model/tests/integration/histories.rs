@@ -94,7 +94,7 @@ step = 0.01
 
 fn message(history: &str, folder: &std::path::Path) -> String {
     let path = folder.join("stone.toml");
-    match scene::Scene::parse(&SCENE.replace("HISTORY", history), path) {
+    match scene::Body::parse(&SCENE.replace("HISTORY", history), path) {
         Ok(scene) => crate::refusal(&scene).to_string(),
         Err(error) => error.to_string(),
     }
@@ -137,7 +137,7 @@ fn a_formula_that_is_none_or_has_no_value_is_refused_at_its_place() {
 /// Closed form: ω = 3 sin 2πft of a driven hinge, which turns with the speed that its history says, and has its rate.
 #[test]
 fn a_motion_has_a_history_too() {
-    let scene = parse(
+    let body = parse(
         r#"
 title = "Crank"
 units = { length = "m", mass = "kg", time = "s" }
@@ -155,8 +155,8 @@ end = 0.5
 step = 1e-3
 "#,
     );
-    let model = crate::build(&scene);
-    for row in observations(&scene, &model) {
+    let model = crate::build(&body);
+    for row in observations(&body, &model) {
         let angle = TAU * 2.0 * row.time;
         assert!((row.omega_body.z - 3.0 * angle.sin()).abs() < 1e-12);
         assert!((row.alpha_body.z - 3.0 * TAU * 2.0 * angle.cos()).abs() < 1e-9);

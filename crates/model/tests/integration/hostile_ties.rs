@@ -4,7 +4,7 @@ use std::path::Path;
 
 use dynamics::{Observation, Simulation, SystemSetup};
 use model::{Model, tie};
-use scene::System;
+use scene::Scene;
 
 const SCENE: &str = r#"
 title = "t"
@@ -85,20 +85,20 @@ const NASTY: [&str; 16] = [
 /// Reads, builds, ties and steps; how far it came.
 fn run(text: &str) -> Result<usize, (usize, String)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/integration/hostile.toml");
-    let system = System::parse(text, path).map_err(|error| (0, error.to_string()))?;
-    let models = system.bodies.iter().map(|scene| Model::build(scene, |_| ())).collect::<Result<Vec<_>, _>>();
+    let scene = Scene::parse(text, path).map_err(|error| (0, error.to_string()))?;
+    let models = scene.bodies.iter().map(|given| Model::build(given, |_| ())).collect::<Result<Vec<_>, _>>();
     let models = models.map_err(|error| (1, error.to_string()))?;
-    for tied in tie(&system, &models).map_err(|error| (2, error.to_string()))? {
-        let time = system.bodies[0].time;
+    for tied in tie(&scene, &models).map_err(|error| (2, error.to_string()))? {
+        let time = scene.bodies[0].time;
         let setup = SystemSetup {
             points: vec![Vec::new(); tied.bodies.len()],
             system: tied.system,
             states: tied.states,
-            relaxed: system.relaxed,
+            relaxed: scene.relaxed,
             scheme: dynamics::SystemScheme::Radau,
             control: time.control,
             end: time.end,
-            rows: system.rows,
+            rows: scene.rows,
         };
         let mut simulation = Simulation::of_system(setup).map_err(|error| (3, error.to_string()))?;
         let mut now: Vec<Observation> = (0..tied.bodies.len()).map(|body| simulation.room(body)).collect();

@@ -26,7 +26,7 @@ use std::path::Path;
 use dynamics::{Observation, PointMotion};
 use model::{BuildError, BuildProgress, Model};
 use nalgebra::Vector3;
-use scene::{Body, Material, Materials, Scene};
+use scene::{Body, BodySource, Material, Materials};
 
 /// Length and breadth of the bar of `../data/bar.geo`, which lies on the x-axis from its origin.
 const LENGTH: f64 = 200.0;
@@ -42,7 +42,7 @@ const BENDING: f64 = BREADTH * BREADTH * BREADTH * BREADTH / 12.0;
 const CLAMPED: &str = "[[constraints]]\nkind = \"clamp\"\ngroup = \"root\"\n";
 
 /// A scene of the bar: its modes, what else there is, and how its time goes.
-fn bar(modes: &str, rest: &str, time: &str) -> Scene {
+fn bar(modes: &str, rest: &str, time: &str) -> Body {
     let text = format!(
         r#"
 title = "Bar"
@@ -65,7 +65,7 @@ tip = [200.0, 0.0, 0.0]
 }
 
 /// A rigid body: mass 2, centre of mass (1, 2, 3), and a general inertia about it.
-fn rigid(rest: &str, time: &str) -> Scene {
+fn rigid(rest: &str, time: &str) -> Body {
     parse(&format!(
         r#"
 title = "Stone"
@@ -83,39 +83,39 @@ center = [1.0, 2.0, 3.0]
     ))
 }
 
-fn parse(text: &str) -> Scene {
+fn parse(text: &str) -> Body {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/integration/scene.toml");
-    Scene::parse(text, path).unwrap_or_else(|error| panic!("{error}"))
+    Body::parse(text, path).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn build(scene: &Scene) -> Model {
-    Model::build(scene, |_| ()).unwrap_or_else(|error| panic!("{error}"))
+fn build(body: &Body) -> Model {
+    Model::build(body, |_| ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Error with which a scene is refused.
-fn refusal(scene: &Scene) -> BuildError {
-    match Model::build(scene, |_| ()) {
+fn refusal(body: &Body) -> BuildError {
+    match Model::build(body, |_| ()) {
         Ok(_) => panic!("it was built"),
         Err(error) => error,
     }
 }
 
 /// All observations of a run, the first included.
-fn observations(scene: &Scene, model: &Model) -> Vec<Observation> {
-    let run = model.start(scene).unwrap_or_else(|error| panic!("{error}"));
+fn observations(body: &Body, model: &Model) -> Vec<Observation> {
+    let run = model.start(body).unwrap_or_else(|error| panic!("{error}"));
     run.map(|row| row.unwrap_or_else(|error| panic!("{error}"))).collect()
 }
 
-fn first(scene: &Scene) -> (Model, Observation) {
-    let model = build(scene);
-    let mut run = model.start(scene).unwrap_or_else(|error| panic!("{error}"));
+fn first(body: &Body) -> (Model, Observation) {
+    let model = build(body);
+    let mut run = model.start(body).unwrap_or_else(|error| panic!("{error}"));
     let first = run.observation().unwrap();
     (model, first)
 }
 
-fn last(scene: &Scene) -> (Model, Observation) {
-    let model = build(scene);
-    let last = observations(scene, &model).pop().unwrap();
+fn last(body: &Body) -> (Model, Observation) {
+    let model = build(body);
+    let last = observations(body, &model).pop().unwrap();
     (model, last)
 }
 
@@ -142,12 +142,12 @@ fn what_the_modal_analysis_refuses_names_the_scene_file() {
     for (density, young_modulus, says) in
         [(1e-310, YOUNG, "which no rigid body can have"), (1e300, 1e300, "a dense eigenvalue problem")]
     {
-        let mut scene = bar("flexible = 2", "", "end = 1e-3\nstep = 1e-5");
-        let Body::Meshed(body) = &mut scene.body else { panic!("no mesh") };
-        body.materials = Materials::Uniform(Material { young_modulus, poisson_ratio: POISSON, density });
-        let error = refusal(&scene);
+        let mut body = bar("flexible = 2", "", "end = 1e-3\nstep = 1e-5");
+        let BodySource::Meshed(meshed) = &mut body.source else { panic!("no mesh") };
+        meshed.materials = Materials::Uniform(Material { young_modulus, poisson_ratio: POISSON, density });
+        let error = refusal(&body);
         assert!(matches!(error, BuildError::Modal { .. }), "{error}");
         let message = error.to_string();
-        assert!(message.starts_with(&format!("{}: ", scene.path.display())) && message.contains(says), "{message}");
+        assert!(message.starts_with(&format!("{}: ", body.path.display())) && message.contains(says), "{message}");
     }
 }

@@ -8,7 +8,7 @@ mod same_as_mesh;
 
 use std::path::{Path, PathBuf};
 
-use scene::Scene;
+use scene::Body;
 use tempfile::TempDir;
 
 /// A folder with the files of a body.
@@ -46,9 +46,9 @@ impl Files {
     }
 
     /// A scene in the folder.
-    pub fn scene(&self, body: &str, modes: &str, rest: &str, time: &str) -> Scene {
+    pub fn scene(&self, body: &str, modes: &str, rest: &str, time: &str) -> Body {
         let text = self.text_of_scene(body, modes, rest, time);
-        Scene::parse(&text, self.file("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
+        Body::parse(&text, self.file("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
     }
 }
 

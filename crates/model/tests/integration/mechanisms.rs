@@ -5,23 +5,23 @@ use std::path::Path;
 
 use dynamics::{Reached, Rows, Simulation, SystemSetup};
 use model::{Model, tie};
-use scene::System;
+use scene::Scene;
 
 use crate::build;
 
 /// The mechanism of an example at its start.
 fn mechanism(name: &str, rows: f64) -> Simulation {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/mechanisms").join(name);
-    let system = System::read(path).unwrap_or_else(|error| panic!("{error}"));
-    let models: Vec<Model> = system.bodies.iter().map(build).collect();
-    let tied = tie(&system, &models).unwrap_or_else(|error| panic!("{error}")).remove(0);
-    assert_eq!(tied.bodies.len(), system.bodies.len());
-    let time = system.bodies[0].time;
+    let scene = Scene::read(path).unwrap_or_else(|error| panic!("{error}"));
+    let models: Vec<Model> = scene.bodies.iter().map(build).collect();
+    let tied = tie(&scene, &models).unwrap_or_else(|error| panic!("{error}")).remove(0);
+    assert_eq!(tied.bodies.len(), scene.bodies.len());
+    let time = scene.bodies[0].time;
     let simulation = Simulation::of_system(SystemSetup {
         points: vec![Vec::new(); tied.bodies.len()],
         system: tied.system,
         states: tied.states,
-        relaxed: system.relaxed,
+        relaxed: scene.relaxed,
         scheme: dynamics::SystemScheme::Radau,
         control: time.control,
         end: time.end,
@@ -29,7 +29,7 @@ fn mechanism(name: &str, rows: f64) -> Simulation {
     })
     .unwrap_or_else(|error| panic!("{error}"));
     for change in simulation.system().unwrap().assembled() {
-        assert!(system.relaxed || change.moved < 1e-9 && change.turned < 1e-9, "its bodies are placed: {change:?}");
+        assert!(scene.relaxed || change.moved < 1e-9 && change.turned < 1e-9, "its bodies are placed: {change:?}");
     }
     simulation
 }

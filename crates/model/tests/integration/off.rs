@@ -6,13 +6,13 @@ use advice::{Refusal, RestOfBody};
 use dynamics::{ConservativeBody, Effect};
 use model::{Builder, Needs};
 
-use crate::{BENDING, BREADTH, BuildProgress, CLAMPED, LENGTH, Model, Scene, YOUNG, bar, build};
+use crate::{BENDING, BREADTH, Body, BuildProgress, CLAMPED, LENGTH, Model, YOUNG, bar, build};
 
 const TIME: &str = "end = 1e-3\nstep = 1e-5";
 const SPIN: &str = "[initial]\nangular_velocity = [0.0, 0.0, 300.0]\n";
 
 /// Six modes and these effects.
-fn effects(which: &str, rest: &str) -> Scene {
+fn effects(which: &str, rest: &str) -> Body {
     bar("flexible = 6\nstatic_correction = false\ndamping_ratio = 0.01", &format!("[effects]\n{which}\n{rest}"), TIME)
 }
 
@@ -95,8 +95,8 @@ fn a_model_without_a_stable_rest_is_refused_with_what_the_full_body_does() {
 #[test]
 fn a_body_that_does_not_deform_has_no_modes_and_asks_for_none() {
     let mut asked = 0;
-    let scene = effects("flexibility = false", SPIN);
-    let model = Model::build(&scene, |progress| {
+    let body = effects("flexibility = false", SPIN);
+    let model = Model::build(&body, |progress| {
         asked += usize::from(matches!(progress, BuildProgress::Modes(_)));
     })
     .unwrap();
@@ -147,15 +147,15 @@ fn under_unknown_forces_nothing_is_left_out_but_what_the_scene_switches_off() {
         ("", format!("{CLAMPED}{faint}"), [1, 2], [0.01, 0.01]),
         ("damping = false\ngravity = false", format!("{CLAMPED}{faint}"), [1, 1], [0.0, 0.0]),
     ] {
-        let scene = effects(which, &rest);
-        let alone = build(&scene);
+        let body = effects(which, &rest);
+        let alone = build(&body);
         assert_eq!(alone.loads().len(), loads[0], "{which} {rest}");
         assert_eq!(alone.damping_ratios(), [ratios[0]; 6], "{which} {rest}");
-        let (physics, of_scene, damping_ratios) = alone.under_unknown_forces(&scene);
+        let (physics, of_scene, damping_ratios) = alone.under_unknown_forces(&body);
         assert_eq!(of_scene.len(), loads[1], "{which} {rest}");
         assert_eq!(damping_ratios, [ratios[1]; 6], "{which} {rest}");
 
-        let full = Builder::default().needing(Needs::external_inputs()).build(&scene, |_| ()).unwrap();
+        let full = Builder::default().needing(Needs::external_inputs()).build(&body, |_| ()).unwrap();
         assert_eq!(physics.effects, full.physics.effects, "{which} {rest}");
         assert_eq!(of_scene.len(), full.loads().len(), "{which} {rest}");
         assert_eq!(damping_ratios, full.damping_ratios(), "{which} {rest}");

@@ -2,14 +2,14 @@
 
 use dynamics::{Observation, Reached, Rows, StepControl};
 use model::Model;
-use scene::Scene;
+use scene::Body;
 
 use crate::{CLAMPED, bar, build, parse};
 
 /// Rows of a run under this control, and the number of its steps.
-fn run(model: &Model, scene: &Scene, control: StepControl) -> (Vec<Observation>, u64) {
-    let rows = Rows::Interval(scene.time.end / 50.0);
-    let mut simulation = model.start_with(scene, *scene.method(), control, rows).unwrap();
+fn run(model: &Model, body: &Body, control: StepControl) -> (Vec<Observation>, u64) {
+    let rows = Rows::Interval(body.time.end / 50.0);
+    let mut simulation = model.start_with(body, *body.method(), control, rows).unwrap();
     let mut observations = Vec::new();
     loop {
         match simulation.advance(u64::MAX) {
@@ -25,7 +25,7 @@ fn run(model: &Model, scene: &Scene, control: StepControl) -> (Vec<Observation>,
 /// of steps.
 fn errors_and_steps<const N: usize>(
     model: &Model,
-    scene: &Scene,
+    scene: &Body,
     tolerances: [f64; N],
     reference: f64,
 ) -> [(f64, u64); N] {
@@ -83,10 +83,10 @@ tip = [3.5, 0.0, 0.0]
     let spinning = ("{ kind = \"half-sine\", duration = 10.0 }", "[initial]\nangular_velocity = [0.02, 0.1, 0.05]");
     for (history, rest) in [step, spinning] {
         let [with, without] = [true, false].map(|correction| {
-            let scene = slew(history, rest, correction);
-            let model = build(&scene);
+            let body = slew(history, rest, correction);
+            let model = build(&body);
             assert_eq!(model.static_shapes() > 0, correction);
-            let [(error, steps)] = errors_and_steps(&model, &scene, [1e-3], 2e-4);
+            let [(error, steps)] = errors_and_steps(&model, &body, [1e-3], 2e-4);
             assert!(error < 1e-3, "{error:e}");
             steps
         });
@@ -106,12 +106,11 @@ fn a_slow_ramp_takes_steps_far_longer_than_the_periods() {
             "[effects]\ngeometric_stiffening = true\n{CLAMPED}{}",
             load("force", "{ kind = \"ramp\", duration = 10.0 }")
         );
-        let scene = bar(&modes, &rest, "end = 10.0\ntolerance = 1e-6");
-        let model = build(&scene);
+        let body = bar(&modes, &rest, "end = 10.0\ntolerance = 1e-6");
+        let model = build(&body);
         assert!(model.is_stressed());
         let tolerances = [1e-3, 1e-6];
-        for ((error, steps), tolerance) in
-            errors_and_steps(&model, &scene, tolerances, 2e-5).into_iter().zip(tolerances)
+        for ((error, steps), tolerance) in errors_and_steps(&model, &body, tolerances, 2e-5).into_iter().zip(tolerances)
         {
             assert!(error < 1.5 * tolerance && steps < most, "{damping}: {steps} {error:e}");
         }
@@ -130,9 +129,9 @@ fn jumps_and_corners_anywhere_are_passed() {
     let formulas = ["floor(7.395*t+0.329)", "sign(sin(20*t))", "sign(t - 0.3)"].map(formula);
     for history in formulas.into_iter().chain([0.0, 1e-13, -1e-12, 1e-11, 1e-10, -1e-9, 1e-8].map(at_row)) {
         let rest = format!("{CLAMPED}{}", load("force", &history));
-        let scene =
+        let body =
             bar("flexible = 3\nstatic_correction = true\ndamping_ratio = 0.02", &rest, "end = 1.0\ntolerance = 1e-5");
-        let [(error, steps)] = errors_and_steps(&build(&scene), &scene, [1e-5], 1e-4);
+        let [(error, steps)] = errors_and_steps(&build(&body), &body, [1e-5], 1e-4);
         assert!(error < 1e-4 && steps < 20_000, "{history}: {steps} {error:e}");
     }
 }

@@ -2,15 +2,15 @@
 
 use dynamics::{Effect, Observation, Reached, Rows, StepControl};
 use model::Model;
-use scene::{Choice, Scene};
+use scene::{Body, Choice};
 
-pub(super) fn example(name: &str) -> Scene {
-    Scene::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
+pub(super) fn example(name: &str) -> Body {
+    Body::read(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap()
 }
 
-fn motion(model: &Model, scene: &Scene, step: f64, interval: f64) -> Vec<Observation> {
-    let (method, control) = (*scene.method(), StepControl::Fixed(step));
-    let mut simulation = model.start_with(scene, method, control, Rows::Interval(interval)).unwrap();
+fn motion(model: &Model, body: &Body, step: f64, interval: f64) -> Vec<Observation> {
+    let (method, control) = (*body.method(), StepControl::Fixed(step));
+    let mut simulation = model.start_with(body, method, control, Rows::Interval(interval)).unwrap();
     let mut rows = Vec::new();
     loop {
         match simulation.advance(u64::MAX) {
@@ -38,18 +38,18 @@ fn errors(rows: &[Observation], reference: &[Observation]) -> (f64, Vec<f64>) {
 
 /// The estimates for some steps, against a run in steps of `reference`: at least a third of the true errors, and at most
 /// `above` times as much.
-fn check(scene: &mut Scene, steps: &[f64], reference: f64, above: f64) -> Vec<f64> {
-    let model = Model::build(scene, |_| ()).unwrap();
+fn check(body: &mut Body, steps: &[f64], reference: f64, above: f64) -> Vec<f64> {
+    let model = Model::build(body, |_| ()).unwrap();
     let check = |step: &f64| {
-        scene.time.control = StepControl::Fixed(*step);
-        scene.rows = scene::Rows::EverySteps(1);
-        let interval = step * (scene.time.end / step / 200.0).ceil();
-        let truth = motion(&model, scene, reference, interval);
-        let (attitude, modes) = errors(&motion(&model, scene, *step, interval), &truth);
-        let estimate = model.step_estimate(scene).unwrap().unwrap();
+        body.time.control = StepControl::Fixed(*step);
+        body.rows = scene::Rows::EverySteps(1);
+        let interval = step * (body.time.end / step / 200.0).ceil();
+        let truth = motion(&model, body, reference, interval);
+        let (attitude, modes) = errors(&motion(&model, body, *step, interval), &truth);
+        let estimate = model.step_estimate(body).unwrap().unwrap();
         println!(
             "{step:e}: {} true {attitude:e} {:e}, estimated {:e} {:e} seen {} finer {}",
-            scene.title,
+            body.title,
             modes.iter().copied().fold(0.0, f64::max),
             estimate.attitude,
             estimate.deformation(),
@@ -58,7 +58,7 @@ fn check(scene: &mut Scene, steps: &[f64], reference: f64, above: f64) -> Vec<f6
         );
         println!("   {}", estimate.in_words(1e-3));
         if estimate.failure.is_some() {
-            assert!(motion(&model, scene, *step, interval).len() < truth.len());
+            assert!(motion(&model, body, *step, interval).len() < truth.len());
             return estimate.largest();
         }
         // What is off by more than 1 is lost, and by how much means nothing.
@@ -81,9 +81,9 @@ fn check(scene: &mut Scene, steps: &[f64], reference: f64, above: f64) -> Vec<f6
 /// by the spin they do not.
 #[test]
 fn of_an_undamped_plate_that_tumbles() {
-    let mut scene = example("tumbling_plate");
-    scene.effects.choices[Effect::Damping] = Choice::Off;
-    let found = check(&mut scene, &[5e-3, 2e-3, 1e-3, 5e-4, 1e-4], 2.5e-5, 3.0);
+    let mut body = example("tumbling_plate");
+    body.effects.choices[Effect::Damping] = Choice::Off;
+    let found = check(&mut body, &[5e-3, 2e-3, 1e-3, 5e-4, 1e-4], 2.5e-5, 3.0);
     assert!(found[0] > 0.1 && found[2] > 0.1 && found[4] < 1e-2, "{found:?}");
     let found = check(&mut example("accuracy/tumbling"), &[5e-3, 1e-3, 5e-4], 2.5e-5, 3.0);
     assert!(found[0] > 1e-2 && found[1] < 1e-2, "{found:?}");
@@ -114,28 +114,28 @@ fn of_a_ring_that_spins_and_is_struck_and_of_a_rigid_pendulum() {
 /// Independent reference: a run in short steps. Long runs: only the beginning is compared.
 #[test]
 fn of_a_run_too_long_to_be_made_three_times() {
-    let mut scene = example("accuracy/spin");
-    scene.time.end = 30.0;
-    let found = check(&mut scene, &[5e-4], 1.25e-4, 30.0);
+    let mut body = example("accuracy/spin");
+    body.time.end = 30.0;
+    let found = check(&mut body, &[5e-4], 1.25e-4, 30.0);
     assert!(found[0] > 1e-2, "{found:?}");
-    assert!(model_sees_less_than_all(&mut scene));
+    assert!(model_sees_less_than_all(&mut body));
 }
 
-fn model_sees_less_than_all(scene: &mut Scene) -> bool {
-    let model = Model::build(scene, |_| ()).unwrap();
-    let estimate = model.step_estimate(scene).unwrap().unwrap();
+fn model_sees_less_than_all(body: &mut Body) -> bool {
+    let model = Model::build(body, |_| ()).unwrap();
+    let estimate = model.step_estimate(body).unwrap().unwrap();
     estimate.seen < 1.0 && estimate.in_words(1e-3).contains("carried on")
 }
 
 /// A load at 50 kHz asks for steps of a microsecond, eight hundred million of them.
 #[test]
 fn of_a_load_far_faster_than_the_steps_only_the_beginning_is_compared() {
-    let mut scene = example("ring");
-    scene.modes.flexible = scene::Flexible::Count(1);
-    (scene.time.end, scene.time.control) = (1000.0, StepControl::Fixed(0.01));
-    scene.rows = scene::Rows::Interval(1.0);
-    scene.loads[0].history = scene::History::Sine { frequency: 5e4, phase: 0.0, start: 0.0, duration: None };
-    let model = Model::build(&scene, |_| ()).unwrap();
-    let seen = model.step_estimate(&scene).unwrap().map_or(0.0, |estimate| estimate.seen);
+    let mut body = example("ring");
+    body.modes.flexible = scene::Flexible::Count(1);
+    (body.time.end, body.time.control) = (1000.0, StepControl::Fixed(0.01));
+    body.rows = scene::Rows::Interval(1.0);
+    body.loads[0].history = scene::History::Sine { frequency: 5e4, phase: 0.0, start: 0.0, duration: None };
+    let model = Model::build(&body, |_| ()).unwrap();
+    let seen = model.step_estimate(&body).unwrap().map_or(0.0, |estimate| estimate.seen);
     assert!(seen < 0.01, "{seen}");
 }

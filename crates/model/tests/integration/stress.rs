@@ -3,7 +3,7 @@
 use advice::Refusal;
 use model::Model;
 use nalgebra::DMatrix;
-use scene::Scene;
+use scene::Body;
 
 use crate::{BENDING, BREADTH, CLAMPED, DENSITY, LENGTH, YOUNG, bar, build, observations};
 
@@ -12,7 +12,7 @@ const TIME: &str = "end = 0.05\nstep = 1e-5";
 const MODES: &str = "flexible = 16\nstatic_correction = false";
 
 /// Without the stiffening that the loads do not call for at this tolerance.
-fn stressed(rest: &str) -> (Scene, Model) {
+fn stressed(rest: &str) -> (Body, Model) {
     // All of the stress, and no large modes: these carry a part of it in their own amplitudes, which are zero here.
     let effects = "[effects]\ntolerance = 1e-9\nlarge_deflection = false\nrefuse = false\n";
     let scene = bar(MODES, &format!("{rest}\n{effects}"), TIME);

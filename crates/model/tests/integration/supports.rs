@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use reduced_body::RigidMotion;
 
-use crate::{Observation, Scene, bar, build, observations, refusal};
+use crate::{Body, Observation, bar, build, observations, refusal};
 
 const TIME: &str = "end = 0.02\nstep = 1e-5";
 
@@ -26,7 +26,7 @@ const SLIDERS: [&str; 3] = [
     "kind = \"slider\"\ndirection = [0.0, 0.0, 1.0]\ngroup = \"root\"",
 ];
 
-fn held(constraint: &str, rest: &str, time: &str) -> Scene {
+fn held(constraint: &str, rest: &str, time: &str) -> Body {
     bar("flexible = 4\nstatic_correction = false", &format!("{rest}\n[[constraints]]\n{constraint}"), time)
 }
 
@@ -168,7 +168,7 @@ const ROOT: &str = "group = \"root\"";
 const MIDDLE: &str = "at = [0.0, 0.0, 0.0]\nradius = 0.1";
 const EDGE: &str = "box = [[0.0, -5.0, -5.0], [0.0, 5.0, -5.0]]";
 
-fn supported(parts: &[(&str, &str)], rest: &str) -> Scene {
+fn supported(parts: &[(&str, &str)], rest: &str) -> Body {
     bar("flexible = 4\nstatic_correction = false", &format!("{rest}\n{}", supports(parts)), TIME)
 }
 
@@ -213,8 +213,8 @@ fn a_body_on_supports_moves_as_one_on_a_hinge() {
     let hinge = "kind = \"hinge\"\nat = [0.0, 0.0, -5.0]\naxis = [0.0, 1.0, 0.0]";
     let of = |constraints: &str| {
         let rest = format!("{start}\n{gravity}\n{constraints}");
-        let scene = bar("flexible = 4\nstatic_correction = false", &rest, "end = 0.02\nstep = 1e-3");
-        observations(&scene, &build(&scene))
+        let body = bar("flexible = 4\nstatic_correction = false", &rest, "end = 0.02\nstep = 1e-3");
+        observations(&body, &build(&body))
     };
     let by_support: Vec<Observation> = of(&supports(&[(EDGE, ALL)]));
     let by_hinge: Vec<Observation> = of(&format!("[[constraints]]\n{hinge}"));
@@ -252,11 +252,11 @@ fn the_forces_of_supports_sum_to_the_reaction_under_a_pressure_on_a_bent_surface
         ["", "[effects]\ngeometric_stiffening = false\n", "[effects]\nlarge_deflection = true\nrefuse = false\n"]
     {
         let rest = format!("{pressure}{effects}{}", supports(&[(ROOT, ALL), (tip, "[\"y\", \"z\"]")]));
-        let scene = bar("flexible = 4", &rest, "end = 2e-3\nstep = 2e-6\n[output]\ninterval = 1e-4");
-        let model = build(&scene);
+        let body = bar("flexible = 4", &rest, "end = 2e-3\nstep = 2e-6\n[output]\ninterval = 1e-4");
+        let model = build(&body);
         let rows = model.supports.as_ref().unwrap();
         let (mut largest, mut off) = (0.0_f64, 0.0_f64);
-        for now in observations(&scene, &model) {
+        for now in observations(&body, &model) {
             let sum: Vector3<f64> = rows.at(&now).iter().map(|[force, _]| force).sum();
             largest = largest.max(now.reaction.force_body.norm());
             off = off.max((sum - now.reaction.force_body).norm());

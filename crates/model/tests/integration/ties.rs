@@ -6,7 +6,7 @@ use dynamics::{Effect, Observation, Reached, Rows, Simulation, StepControl, Syst
 use faer::Mat;
 use model::{BodyMarker, Model, StartError, Tied, UnknownTurns, tie};
 use nalgebra::Vector3;
-use scene::System;
+use scene::Scene;
 
 use crate::{build, last, parse, point};
 
@@ -18,11 +18,11 @@ const RIGID: &str =
 const FALLS: &str = "loads = [{ kind = 'gravity', direction = [0, 0, -1], amplitude = 9810.0 }]\n";
 const TIME: &str = "[time]\nend = 0.02\ntolerance = 1e-6\n";
 
-fn system(text: &str) -> (System, Vec<Model>) {
+fn system(text: &str) -> (Scene, Vec<Model>) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/integration/scene.toml");
-    let system = System::parse(text, path).unwrap_or_else(|error| panic!("{error}"));
-    let models = system.bodies.iter().map(build).collect();
-    (system, models)
+    let scene = Scene::parse(text, path).unwrap_or_else(|error| panic!("{error}"));
+    let models = scene.bodies.iter().map(build).collect();
+    (scene, models)
 }
 
 /// The first rows of the shapes of a marker (6×nf): its displacement and its rotation in each mode.
@@ -217,8 +217,8 @@ fn joints_of_markers_that_do_not_tell_their_turns_and_regions_without_faces_are_
         )
     };
     for marker in ["{ box = [[10, -1, -1], [11, 1, 1]] }", "{ group = 'rot' }"] {
-        let scene = parse(&nodes("fixed", marker, ""));
-        let error = Model::build(&scene, |_| ()).unwrap_err().to_string();
+        let body = parse(&nodes("fixed", marker, ""));
+        let error = Model::build(&body, |_| ()).unwrap_err().to_string();
         assert!(error.contains("body.markers.root"), "{error}");
     }
     // A point of a mesh has the turns of the elements around it.

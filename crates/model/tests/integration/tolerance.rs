@@ -2,13 +2,13 @@
 
 use dynamics::{Effect, Observation, Rows, StepControl};
 use model::Model;
-use scene::{Choice, Scene};
+use scene::{Body, Choice};
 
 use super::step::example;
 
 /// Largest errors of the attitude, of the modal coordinates and of the points' accelerations, the latter two relative to
 /// the largest values, in a hundred rows, between which step control goes as far as it likes.
-fn errors(model: &Model, scene: &Scene, tolerance: f64, reference: f64) -> [f64; 3] {
+fn errors(model: &Model, scene: &Body, tolerance: f64, reference: f64) -> [f64; 3] {
     let method = *scene.method();
     let interval = scene.time.end / 100.0;
     let follow = |control| -> (Vec<Observation>, u64) {
@@ -46,10 +46,10 @@ fn errors(model: &Model, scene: &Scene, tolerance: f64, reference: f64) -> [f64;
 
 /// Check of attitude and modal coordinates; accelerations of points, where many modes meet, may be off by `points` times the
 /// tolerance.
-fn check(scene: &Scene, tolerances: &[f64], reference: f64, points: f64) {
-    let model = Model::build(scene, |_| ()).unwrap();
+fn check(body: &Body, tolerances: &[f64], reference: f64, points: f64) {
+    let model = Model::build(body, |_| ()).unwrap();
     for &tolerance in tolerances {
-        let [attitude, modal, acceleration] = errors(&model, scene, tolerance, reference);
+        let [attitude, modal, acceleration] = errors(&model, body, tolerance, reference);
         assert!(attitude.max(modal) < tolerance, "{tolerance:e}: {attitude:e} {modal:e}");
         assert!(acceleration < points * tolerance, "{tolerance:e}: {acceleration:e}");
     }
@@ -70,9 +70,9 @@ fn of_a_plate_that_tumbles() {
 /// Conserved: the same motion in steps of 1e-5 s.
 #[test]
 fn high_modes_that_a_load_strikes_are_right_in_a_pendulum() {
-    let mut scene = example("bar/pendulum");
-    scene.effects.choices[Effect::Flexibility] = Choice::On;
-    scene.time.end = 1.0;
-    scene.output.points = [("middle".into(), [200.0, 0.0, 0.0]), ("tip".into(), [400.0, 0.0, 0.0])].into();
-    check(&scene, &[1e-3, 1e-5], 1e-5, 3.0);
+    let mut body = example("bar/pendulum");
+    body.effects.choices[Effect::Flexibility] = Choice::On;
+    body.time.end = 1.0;
+    body.output.points = [("middle".into(), [200.0, 0.0, 0.0]), ("tip".into(), [400.0, 0.0, 0.0])].into();
+    check(&body, &[1e-3, 1e-5], 1e-5, 3.0);
 }

@@ -45,8 +45,8 @@ impl JointEquation {
 
 impl JointEquation {
     /// The equation at a joint of a system.
-    pub(crate) fn of(&self, py: Python<'_>, system: &scene::System, faults: &Faults) -> PyResult<OwnEquation> {
-        let joint = joint_number(py, &self.joint, system)?;
+    pub(crate) fn of(&self, py: Python<'_>, scene: &scene::Scene, faults: &Faults) -> PyResult<OwnEquation> {
+        let joint = joint_number(py, &self.joint, scene)?;
         let equation = PythonEquation {
             function: self.law.function.clone_ref(py),
             name: self.law.name.clone(),

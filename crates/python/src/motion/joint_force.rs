@@ -56,9 +56,9 @@ impl JointForce {
 
 impl JointForce {
     /// The law at a joint of a system.
-    pub(crate) fn of(&self, py: Python<'_>, system: &scene::System, faults: &Faults) -> PyResult<JointForces> {
-        let number = joint_number(py, &self.joint, system)?;
-        let known = system.joints[number].kind.coordinates();
+    pub(crate) fn of(&self, py: Python<'_>, scene: &scene::Scene, faults: &Faults) -> PyResult<JointForces> {
+        let number = joint_number(py, &self.joint, scene)?;
+        let known = scene.joints[number].kind.coordinates();
         let along = match (self.along, known) {
             (None, [only]) => *only,
             (Some(along), known) if known.contains(&along) => along,
@@ -68,7 +68,7 @@ impl JointForce {
                     Some(Coordinate::Turn) => "`turn`",
                     Some(Coordinate::Slide) => "`slide`",
                 };
-                let kind = system.joints[number].kind.name();
+                let kind = scene.joints[number].kind.name();
                 let help = "a hinge turns, a slide slides, a cylindrical joint does both";
                 return Err(wrong_input(py, "along", found, &format!("a coordinate of a {kind} joint"), help));
             }
@@ -78,10 +78,10 @@ impl JointForce {
 }
 
 /// The number of a joint of a system, by its name.
-pub(crate) fn joint_number(py: Python<'_>, name: &str, system: &scene::System) -> PyResult<usize> {
-    let names = || system.joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>().join(", ");
-    system.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
-        let expected = if system.joints.is_empty() { "none: there are no joints".to_owned() } else { names() };
+pub(crate) fn joint_number(py: Python<'_>, name: &str, scene: &scene::Scene) -> PyResult<usize> {
+    let names = || scene.joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>().join(", ");
+    scene.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
+        let expected = if scene.joints.is_empty() { "none: there are no joints".to_owned() } else { names() };
         wrong_input(py, "joint", &format!("`{name}`"), &format!("one of {expected}"), "name a joint of [[joints]]")
     })
 }

@@ -49,9 +49,9 @@ impl MarkerForce {
 
 impl MarkerForce {
     /// The law between the markers of a system.
-    pub(crate) fn of(&self, py: Python<'_>, system: &scene::System, faults: &Faults) -> PyResult<MarkerForces> {
-        let ends = system.ends();
-        let names: Vec<String> = ends.iter().map(|end| system.name_of(*end)).collect();
+    pub(crate) fn of(&self, py: Python<'_>, scene: &scene::Scene, faults: &Faults) -> PyResult<MarkerForces> {
+        let ends = scene.ends();
+        let names: Vec<String> = ends.iter().map(|end| scene.name_of(*end)).collect();
         let end = |name: &String| match names.iter().position(|known| known == name) {
             Some(number) => Ok(ends[number]),
             None => {

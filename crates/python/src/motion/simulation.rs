@@ -96,7 +96,7 @@ pub(crate) struct Simulation {
 
 /// A body of a run.
 struct Moved {
-    scene: Arc<flexframe::scene::Scene>,
+    scene: Arc<flexframe::scene::Body>,
     model: Arc<Model>,
     effects: EffectMap<bool>,
 }
@@ -254,10 +254,10 @@ impl Simulation {
 }
 
 /// The bodies of a Body or a System, and what ties them together.
-fn bodies_of(of: &Bound<'_, PyAny>) -> PyResult<(Arc<flexframe::scene::System>, Vec<Arc<Model>>)> {
+fn bodies_of(of: &Bound<'_, PyAny>) -> PyResult<(Arc<flexframe::scene::Scene>, Vec<Arc<Model>>)> {
     if let Ok(body) = of.cast::<Body>() {
-        let scene: flexframe::scene::Scene = (**body.get().scene_of()).clone();
-        return Ok((Arc::new(scene.into()), vec![body.get().model().clone()]));
+        let given: flexframe::scene::Body = (**body.get().scene_of()).clone();
+        return Ok((Arc::new(given.into()), vec![body.get().model().clone()]));
     }
     if let Ok(system) = of.cast::<System>() {
         return Ok((system.get().system().clone(), system.get().models().to_vec()));
@@ -270,7 +270,7 @@ fn bodies_of(of: &Bound<'_, PyAny>) -> PyResult<(Arc<flexframe::scene::System>, 
 fn loads_of_bodies<'py>(
     py: Python<'py>,
     loads: Option<Bound<'py, PyAny>>,
-    bodies: &[flexframe::scene::Scene],
+    bodies: &[flexframe::scene::Body],
     is_system: bool,
 ) -> PyResult<Vec<Vec<Bound<'py, PyAny>>>> {
     if !is_system {
@@ -324,8 +324,8 @@ impl Simulation {
         let is_system = body.cast::<System>().is_ok();
         let of_models: Vec<&Model> = models.iter().map(|model| &**model).collect();
         let of_run: Vec<RunBody<'_>> =
-            system.bodies.iter().zip(&of_models).map(|(scene, model)| RunBody { scene, model }).collect();
-        let mut metadata = flexframe::run::metadata_of_system(&system, &of_run);
+            system.bodies.iter().zip(&of_models).map(|(body, model)| RunBody { body, model }).collect();
+        let mut metadata = flexframe::run::metadata_of_scene(&system, &of_run);
         let mut beginning = StartSettings { together: is_system, ..StartSettings::of(&system, &of_models) };
         let faults = Faults::default();
         let loads = loads_of_bodies(py, loads, &system.bodies, is_system)?;

@@ -8,9 +8,9 @@ use matrix_import::MatrixFiles;
 use nalgebra::{Matrix3, Vector3};
 
 use super::Check;
+use crate::body::{BodySource, FileBody, MeshedBody, RigidBody, TiedMass};
 use crate::document::join;
 use crate::error::SceneError;
-use crate::scene::{Body, FileBody, MeshedBody, RigidBody, TiedMass};
 use crate::section::{BodySection, MatricesSection, RigidSection};
 
 /// Relative difference of entries of an inertia tensor that should be equal, still taken for rounding.
@@ -21,7 +21,7 @@ const ASYMMETRY: f64 = 1e-6;
 const EXCESS: f64 = 1e-3;
 
 impl Check<'_> {
-    pub fn body(&self, section: BodySection) -> Result<Body, SceneError> {
+    pub fn source(&self, section: BodySection) -> Result<BodySource, SceneError> {
         let BodySection {
             mesh,
             file,
@@ -36,7 +36,7 @@ impl Check<'_> {
             markers: _,
         } = section;
         if let Some(matrices) = matrices {
-            return self.matrices(&matrices).map(Body::Matrices);
+            return self.matrices(&matrices).map(BodySource::Matrices);
         }
         let raise_order = raise_order.unwrap_or_default();
         let Some(rigid) = rigid else {
@@ -52,7 +52,7 @@ impl Check<'_> {
                 self.point_masses(&point_masses)?;
                 self.tied_masses(&tied_masses)?;
                 let body = MeshedBody { mesh, mesh_size, raise_order, materials, point_masses, tied_masses };
-                return Ok(Body::Meshed(body));
+                return Ok(BodySource::Meshed(body));
             };
             if self.has("body.tied_masses") {
                 let help = "keep `file` without it, or give the body its mesh and materials";
@@ -60,7 +60,7 @@ impl Check<'_> {
                 return Err(place.refuse("both `file` and `tied_masses`", "a body of a mesh", help));
             }
             let is_given = material.is_some() || materials.is_some();
-            return Ok(Body::File(FileBody {
+            return Ok(BodySource::File(FileBody {
                 file: self.body_file(&file, mesh.is_some())?,
                 mesh,
                 mesh_size,
@@ -79,7 +79,7 @@ impl Check<'_> {
                 ));
             }
         }
-        self.rigid(&rigid).map(Body::Rigid)
+        self.rigid(&rigid).map(BodySource::Rigid)
     }
 
     /// The refusal of a body that is not said.
@@ -186,9 +186,9 @@ impl Check<'_> {
     }
 
     /// Refuses a point mass that nothing ties.
-    pub fn turns(&self, body: &Body) -> Result<(), SceneError> {
+    pub fn turns(&self, body: &BodySource) -> Result<(), SceneError> {
         match body {
-            Body::Rigid(rigid) if rigid.is_point() => Err(self.document.place("body.rigid.inertia").refuse(
+            BodySource::Rigid(rigid) if rigid.is_point() => Err(self.document.place("body.rigid.inertia").refuse(
                 "zeros for a body that neither a joint nor a spring ties to another or to the ground",
                 "an inertia",
                 "give it one: the place of a body that moves alone does not depend on it",

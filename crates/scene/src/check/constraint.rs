@@ -1,11 +1,11 @@
 //! The rules on `[[constraints]]`.
 
 use super::Check;
+use crate::body::BodySource;
 use crate::body::constraint::{Constraint, HeldDirections, HingeLine, Region};
 use crate::document::join;
 use crate::error::SceneError;
 use crate::loads::history::DrivenSpeed;
-use crate::scene::Body;
 use crate::section::ConstraintSection;
 
 /// The keys of a region, as the file gives them.
@@ -20,7 +20,7 @@ impl Check<'_> {
     pub fn constraints(
         &self,
         mut sections: Vec<ConstraintSection>,
-        body: &Body,
+        body: &BodySource,
     ) -> Result<Option<Constraint>, SceneError> {
         if sections.iter().any(|section| matches!(section, ConstraintSection::Support { .. })) {
             return self.supports(sections, body).map(Some);
@@ -36,7 +36,7 @@ impl Check<'_> {
     }
 
     /// Constraints that are supports, all of them.
-    fn supports(&self, sections: Vec<ConstraintSection>, body: &Body) -> Result<Constraint, SceneError> {
+    fn supports(&self, sections: Vec<ConstraintSection>, body: &BodySource) -> Result<Constraint, SceneError> {
         let mut parts = Vec::new();
         for (i, section) in sections.into_iter().enumerate() {
             let key = format!("constraints[{i}]");
@@ -54,7 +54,7 @@ impl Check<'_> {
         Ok(Constraint::Support { parts })
     }
 
-    fn constraint(&self, key: &str, section: ConstraintSection, body: &Body) -> Result<Constraint, SceneError> {
+    fn constraint(&self, key: &str, section: ConstraintSection, body: &BodySource) -> Result<Constraint, SceneError> {
         match section {
             ConstraintSection::Pin { at, radius } => {
                 if let Some(radius) = radius {
@@ -77,7 +77,7 @@ impl Check<'_> {
                 }
                 let shaft: Vec<Region> = balls.into_iter().chain(region).collect();
                 let motion = self.motion(key, motion)?;
-                if motion.is_some() && shaft.is_empty() && !matches!(body, Body::Rigid(_)) {
+                if motion.is_some() && shaft.is_empty() && !matches!(body, BodySource::Rigid(_)) {
                     return Err(self.document.place(&join(key, "motion")).refuse(
                         "a driven hinge without a shaft",
                         "nodes beside the line that the drive can turn",
@@ -87,7 +87,7 @@ impl Check<'_> {
                 Ok(Constraint::Hinge { line, shaft, motion })
             }
             ConstraintSection::Clamp { at, radius, r#box, group } => {
-                if let Body::Rigid(_) = body {
+                if let BodySource::Rigid(_) = body {
                     return Err(self.document.place(&join(key, "kind")).refuse(
                         "a rigid body that is clamped",
                         "a body that can move",
@@ -105,7 +105,7 @@ impl Check<'_> {
                 let help = "give the direction to slide along; its length does not matter";
                 self.normalise(&join(key, "direction"), &mut direction, help)?;
                 let region = self.region(key, RegionKeys { at, radius, r#box, group }, body)?;
-                if region.is_none() && !matches!(body, Body::Rigid(_)) {
+                if region.is_none() && !matches!(body, BodySource::Rigid(_)) {
                     return Err(self.no_region(key));
                 }
                 let motion = self.motion(key, motion)?;
@@ -173,7 +173,7 @@ impl Check<'_> {
         Ok(line)
     }
 
-    pub(super) fn region(&self, key: &str, keys: RegionKeys, body: &Body) -> Result<Option<Region>, SceneError> {
+    pub(super) fn region(&self, key: &str, keys: RegionKeys, body: &BodySource) -> Result<Option<Region>, SceneError> {
         let help = "keep one way to say which nodes are meant";
         self.at_most_one(key, &["radius", "box", "group"], help)?;
         let (name, region) = match keys {

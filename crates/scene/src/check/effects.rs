@@ -6,10 +6,10 @@ use super::Check;
 use crate::body::constraint::Constraint;
 use crate::body::effects::{Choice, Effects};
 use crate::body::modes::{Flexible, Modes};
+use crate::body::{BodySource, Initial, MeshedBody};
 use crate::document::join;
 use crate::error::SceneError;
 use crate::loads::load::Load;
-use crate::scene::{Body, Initial, MeshedBody};
 
 impl Check<'_> {
     pub fn effects(
@@ -58,16 +58,16 @@ impl Check<'_> {
     }
 
     /// The effects that need the elements of a body.
-    pub fn effects_of_elements(&self, effects: &Effects, modes: &Modes, body: &Body) -> Result<(), SceneError> {
+    pub fn effects_of_elements(&self, effects: &Effects, modes: &Modes, body: &BodySource) -> Result<(), SceneError> {
         let Some(found) = body.not_by_elements() else { return Ok(()) };
         let help = match body {
-            Body::Matrices(_) => {
+            BodySource::Matrices(_) => {
                 let help = "give the body a mesh and a material";
                 self.not_on(effects, Effect::GeometricStiffening, true, found, help)?;
                 help
             }
-            Body::Meshed(_) => MeshedBody::WITHOUT_TIED_MASSES,
-            Body::File(_) | Body::Rigid(_) => return Ok(()),
+            BodySource::Meshed(_) => MeshedBody::WITHOUT_TIED_MASSES,
+            BodySource::File(_) | BodySource::Rigid(_) => return Ok(()),
         };
         self.not_on(effects, Effect::LargeDeflection, true, found, help)?;
         if modes.large.is_none() {

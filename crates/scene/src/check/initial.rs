@@ -4,10 +4,10 @@ use nalgebra::Vector3;
 use rigid_kin::Attitude;
 
 use super::Check;
+use crate::body::Initial;
 use crate::body::constraint::Constraint;
 use crate::body::modes::Modes;
 use crate::error::SceneError;
-use crate::scene::Initial;
 
 /// Sine of the angle between an initial velocity and the direction that is left, up to which it counts as rounding.
 const ALONG: f64 = 1e-6;

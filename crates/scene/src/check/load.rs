@@ -3,15 +3,20 @@
 use dynamics::LoadFrame;
 
 use super::Check;
+use crate::body::BodySource;
 use crate::body::constraint::Constraint;
 use crate::document::join;
 use crate::error::SceneError;
 use crate::loads::load::{Load, LoadKind, LoadPlace};
-use crate::scene::Body;
 
 impl Check<'_> {
     /// Checks the loads, normalises their directions and reads their tables.
-    pub fn loads(&self, loads: &mut [Load], body: &Body, constraint: Option<&Constraint>) -> Result<(), SceneError> {
+    pub fn loads(
+        &self,
+        loads: &mut [Load],
+        body: &BodySource,
+        constraint: Option<&Constraint>,
+    ) -> Result<(), SceneError> {
         let help = "put forces that go together into one traction or pressure on a physical surface";
         self.not_too_many("loads", loads.len(), help)?;
         for (i, load) in loads.iter_mut().enumerate() {
@@ -20,7 +25,7 @@ impl Check<'_> {
                 let key = join(&key, "group");
                 self.needs_mesh(&key, body)?;
                 self.group(&key, group)?;
-                if let Body::Matrices(_) = body {
+                if let BodySource::Matrices(_) = body {
                     return Err(self.document.place(&key).refuse(
                         "a surface of a body of matrices, which has no elements",
                         "loads at nodes",
@@ -63,10 +68,10 @@ impl Check<'_> {
     }
 
     /// Refuses a key that speaks of nodes, on a body without a mesh.
-    pub(super) fn needs_mesh(&self, key: &str, body: &Body) -> Result<(), SceneError> {
+    pub(super) fn needs_mesh(&self, key: &str, body: &BodySource) -> Result<(), SceneError> {
         match body {
-            Body::Meshed(_) | Body::File(_) | Body::Matrices(_) => Ok(()),
-            Body::Rigid(_) => Err(self.document.place(key).refuse(
+            BodySource::Meshed(_) | BodySource::File(_) | BodySource::Matrices(_) => Ok(()),
+            BodySource::Rigid(_) => Err(self.document.place(key).refuse(
                 "a part of a mesh",
                 "none, since `rigid` in [body] has no mesh",
                 "use points (`at` alone) for loads, constraints and markers, or give `mesh` and `material` in [body] instead of `rigid`",

@@ -4,11 +4,11 @@ use nalgebra::Vector3;
 
 use super::Check;
 use super::constraint::RegionKeys;
+use crate::body::BodySource;
 use crate::body::constraint::Constraint;
 use crate::document::join;
 use crate::error::SceneError;
 use crate::loads::unit_vector::unit;
-use crate::scene::Body;
 use crate::text::name::check_key;
 use crate::tie::joint::JointKind;
 use crate::tie::marker::{GroundMarker, Marker, MarkerAxes, MarkerPlace, Tie};
@@ -20,7 +20,11 @@ const PARALLEL: f64 = 1e-6;
 const MAX_PATCHES: u32 = 32;
 
 impl Check<'_> {
-    pub fn markers(&self, InOrder(sections): InOrder<MarkerSection>, body: &Body) -> Result<Vec<Marker>, SceneError> {
+    pub fn markers(
+        &self,
+        InOrder(sections): InOrder<MarkerSection>,
+        body: &BodySource,
+    ) -> Result<Vec<Marker>, SceneError> {
         let help = "each marker adds static shapes to the body: keep those that joints need";
         self.not_too_many("body.markers", sections.len(), help)?;
         let marker = |(name, section)| self.marker(name, section, body);
@@ -64,7 +68,7 @@ impl Check<'_> {
         sections.into_iter().map(marker).collect()
     }
 
-    fn marker(&self, name: String, section: MarkerSection, body: &Body) -> Result<Marker, SceneError> {
+    fn marker(&self, name: String, section: MarkerSection, body: &BodySource) -> Result<Marker, SceneError> {
         let MarkerSection { at, radius, r#box, group, tie, patches, along, z, x } = section;
         let key = self.marker_key("body.markers", &name)?;
         let help = "keep one way to say where the marker is";

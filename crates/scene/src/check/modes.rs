@@ -3,10 +3,10 @@
 use dynamics::{MAX_FOLLOWING, MAX_LARGE};
 
 use super::Check;
+use crate::body::BodySource;
 use crate::body::effects::Choice;
 use crate::body::modes::{About, Damping, Flexible, Large, Modes, Rayleigh};
 use crate::error::SceneError;
-use crate::scene::Body;
 use crate::section::{AboutGiven, AboutName, AboutSection, CountOrAuto, CountOrList, ModesSection, NumberOrList};
 
 /// The largest number of modes with `flexible = "auto"`, where the scene gives none.
@@ -15,8 +15,8 @@ const DEFAULT_MOST: usize = 40;
 const DEFAULT_FOLLOWING: usize = 3;
 
 impl Check<'_> {
-    pub fn modes(&self, section: Option<ModesSection>, body: &Body) -> Result<Modes, SceneError> {
-        let is_rigid = matches!(body, Body::Rigid(_));
+    pub fn modes(&self, section: Option<ModesSection>, body: &BodySource) -> Result<Modes, SceneError> {
+        let is_rigid = matches!(body, BodySource::Rigid(_));
         let Some(section) = section else {
             return match is_rigid {
                 true => Ok(Modes {
@@ -61,7 +61,7 @@ impl Check<'_> {
         Ok(Modes { flexible, damping, static_correction, large, following, about, measured })
     }
 
-    fn about(&self, about: &AboutSection, body: &Body, flexible: Flexible) -> Result<About, SceneError> {
+    fn about(&self, about: &AboutSection, body: &BodySource, flexible: Flexible) -> Result<About, SceneError> {
         let place = self.document.place("modes.about");
         let is_stiff = flexible == Flexible::Count(0);
         if let Some(found) = is_stiff.then_some("a body without flexible modes").or(body.not_by_elements()) {

@@ -5,12 +5,12 @@ use std::collections::BTreeSet;
 use dynamics::{Coordinate, Effect, Friction, Stops};
 
 use super::Check;
+use crate::body::Body;
 use crate::body::constraint::Constraint;
 use crate::body::effects::Choice;
 use crate::document::join;
 use crate::error::SceneError;
 use crate::loads::load::LoadKind;
-use crate::scene::Scene;
 use crate::text::name::{GROUND, ONLY_BODY, is_part_of_path};
 use crate::text::suggest::{nearest, one_of};
 use crate::tie::joint::{
@@ -35,13 +35,13 @@ pub(crate) struct Ties {
 
 /// The bodies and the ground that ends are looked up in.
 struct Ends<'a> {
-    bodies: &'a [Scene],
+    bodies: &'a [Body],
     ground: &'a [GroundMarker],
 }
 
 impl Check<'_> {
     /// Joints, springs and bushings between these bodies.
-    pub fn ties(&self, sections: TieSections, bodies: &[Scene]) -> Result<Ties, SceneError> {
+    pub fn ties(&self, sections: TieSections, bodies: &[Body]) -> Result<Ties, SceneError> {
         let TieSections { relaxed, ground, joints, springs, bushings, couplings } = sections;
         let ground = self.ground_markers(ground.markers)?;
         let counts = [
@@ -65,7 +65,7 @@ impl Check<'_> {
         let bushings = bushings.into_iter().enumerate().map(bushing).collect::<Result<_, _>>()?;
         let coupling = |(i, section)| self.coupling(&format!("couplings[{i}]"), i, section, &joints, &mut names);
         let couplings = couplings.into_iter().enumerate().map(coupling).collect::<Result<_, _>>()?;
-        bodies.iter().filter(|scene| scene.tied).try_for_each(can_be_tied)?;
+        bodies.iter().filter(|body| body.tied).try_for_each(can_be_tied)?;
         Ok(Ties { ground, joints, springs, bushings, couplings, relaxed })
     }
 
@@ -100,25 +100,25 @@ impl Check<'_> {
     }
 
     /// The joints to the ground that constraints of bodies in joints are.
-    fn supports_as_joints(&self, bodies: &[Scene], names: &mut BTreeSet<String>) -> Result<Vec<Joint>, SceneError> {
+    fn supports_as_joints(&self, bodies: &[Body], names: &mut BTreeSet<String>) -> Result<Vec<Joint>, SceneError> {
         let mut joints = Vec::new();
-        for (body, scene) in bodies.iter().enumerate().filter(|(_, scene)| scene.tied) {
-            for (marker, of_body) in scene.markers.iter().enumerate() {
+        for (number, body) in bodies.iter().enumerate().filter(|(_, body)| body.tied) {
+            for (marker, of_body) in body.markers.iter().enumerate() {
                 let MarkerPlace::Held { constraint, .. } = &of_body.place else { continue };
-                let name = match &scene.name {
-                    Some(body) => format!("{body}_{}", of_body.name),
+                let name = match &body.name {
+                    Some(name) => format!("{name}_{}", of_body.name),
                     None => of_body.name.clone(),
                 };
                 if !names.insert(name.clone()) {
                     let found = format!("a constraint whose joint to the ground has the name {name:?}, which is taken");
                     let help = "rename the other joint, spring, bushing or coupling";
-                    return Err(scene.refuse(&of_body.key(), found, "each name once", help));
+                    return Err(body.refuse(&of_body.key(), found, "each name once", help));
                 }
                 joints.push(Joint {
-                    key: scene.place(&of_body.key()).key.clone(),
+                    key: body.place(&of_body.key()).key.clone(),
                     name,
                     kind: JointKind::of_constraint(constraint).0,
-                    between: [End::Ground { marker: None }, End::Body { body, marker }],
+                    between: [End::Ground { marker: None }, End::Body { body: number, marker }],
                     axis: None,
                     drive: None,
                     spring: None,
@@ -454,7 +454,7 @@ impl Ends<'_> {
                 |marker| number_of(marker, names(), &format!("marker {marker:?} of the ground"), "[ground.markers]");
             return Ok(End::Ground { marker: marker.map(find).transpose()? });
         }
-        let names = || self.bodies.iter().map(|scene| scene.name.as_deref().unwrap_or(ONLY_BODY));
+        let names = || self.bodies.iter().map(|body| body.name.as_deref().unwrap_or(ONLY_BODY));
         let number = number_of(body, names().chain([GROUND]), &format!("body {body:?}"), "the scene")?;
         let of_body = || self.bodies[number].markers.iter().map(|marker| marker.name.as_str());
         let table = format!("the body {body:?}");
@@ -515,17 +515,17 @@ fn number_of<'n>(name: &str, known: impl Iterator<Item = &'n str>, what: &str, t
 }
 
 /// Refuses a body in joints with effects off that joints need, with a support that is given a speed, or whose support moves.
-fn can_be_tied(scene: &Scene) -> Result<(), SceneError> {
+fn can_be_tied(body: &Body) -> Result<(), SceneError> {
     let in_joint = "of a body that joints, springs or bushings hold";
-    if scene.constraint.as_ref().and_then(Constraint::motion).is_some() {
+    if body.constraint.as_ref().and_then(Constraint::motion).is_some() {
         let help = "say it as a joint between a marker of the body and \"ground\" whose `drive` gives the angle or the path over time";
         let found = format!("the speed of a constraint {in_joint}");
-        return Err(scene.refuse("constraints[0].motion", found, "a constraint without `motion`", help));
+        return Err(body.refuse("constraints[0].motion", found, "a constraint without `motion`", help));
     }
-    if let Some(number) = scene.loads.iter().position(|load| load.kind == LoadKind::BaseAcceleration) {
+    if let Some(number) = body.loads.iter().position(|load| load.kind == LoadKind::BaseAcceleration) {
         let help = "give each body of the scene a load `kind = \"gravity\"` in the opposite direction";
         let found = format!("the acceleration of the base {in_joint}");
-        return Err(scene.refuse(
+        return Err(body.refuse(
             &format!("loads[{number}].kind"),
             found,
             "a body that its constraints alone hold",
@@ -533,9 +533,9 @@ fn can_be_tied(scene: &Scene) -> Result<(), SceneError> {
         ));
     }
     for effect in [Effect::Translation, Effect::Rotation] {
-        if scene.effects.choices[effect] == Choice::Off {
+        if body.effects.choices[effect] == Choice::Off {
             let found = format!("`{} = false` {in_joint}", effect.name());
-            return Err(scene.refuse(&join("effects", effect.name()), found, "`true` or `\"auto\"`", "remove it"));
+            return Err(body.refuse(&join("effects", effect.name()), found, "`true` or `\"auto\"`", "remove it"));
         }
     }
     Ok(())

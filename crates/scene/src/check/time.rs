@@ -3,11 +3,12 @@
 use dynamics::{Method, Rows, StepControl, SystemScheme};
 
 use super::Check;
+use crate::body::{BodySource, Output};
 use crate::document::join;
 use crate::error::SceneError;
 use crate::methods::{METHODS, is_without_joints, method_named, method_of_joints_named};
-use crate::scene::{Body, Output, Time};
 use crate::section::{Formulation, OutputSection, Scheme, TimeSection};
+use crate::shared::Time;
 use crate::text::shorten::shorten;
 
 /// Intervals between rows where the scene gives a tolerance and names no rows.
@@ -145,7 +146,7 @@ impl Check<'_> {
         length < LEAST_PART * self.end
     }
 
-    pub fn output(&self, section: OutputSection, time: &Time, body: &Body) -> Result<(Rows, Output), SceneError> {
+    pub fn output(&self, section: OutputSection, time: &Time, body: &BodySource) -> Result<(Rows, Output), SceneError> {
         let OutputSection { every, interval, points, stress, peak_stress } = section;
         let rows = match (every, interval, time.control) {
             (Some(_), Some(_), _) => {
@@ -200,7 +201,7 @@ impl Check<'_> {
                 key,
                 "a body with a mesh",
                 match body {
-                    Body::Matrices(_) => {
+                    BodySource::Matrices(_) => {
                         "remove the key: matrices say nothing of stress, which needs the elements of a mesh"
                     }
                     _ => "remove the key: a rigid body without a mesh has no stress",

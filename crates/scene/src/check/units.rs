@@ -2,7 +2,7 @@
 
 use crate::check::Check;
 use crate::error::SceneError;
-use crate::scene::Units;
+use crate::shared::Units;
 use crate::text::suggest::list;
 
 /// A pound in kilograms.

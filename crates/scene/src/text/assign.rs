@@ -24,7 +24,7 @@ enum Step {
 /// The text of a scene with other values of some keys, in their order. A key is a path such as `loads[0].amplitude`; tables
 /// that the text lacks are added. Comments and everything else stay. Keys are written as in TOML: `points."left wing"`.
 ///
-/// A text that is no TOML stays as it is: [`Scene::parse`](crate::Scene::parse) refuses it and says where.
+/// A text that is no TOML stays as it is: [`Body::parse`](crate::Body::parse) refuses it and says where.
 ///
 /// # Errors
 /// [`AssignError`] if a path does not lead to a place in the text.

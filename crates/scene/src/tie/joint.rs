@@ -14,12 +14,12 @@ pub enum End {
     Body {
         /// Number of the body in the scene.
         body: usize,
-        /// Number of the marker in [`Scene::markers`](crate::Scene::markers).
+        /// Number of the marker in [`Body::markers`](crate::Body::markers).
         marker: usize,
     },
     /// The ground.
     Ground {
-        /// Number of the marker in [`System::ground`](crate::System::ground); `None` is where the other end is at the start.
+        /// Number of the marker in [`Scene::ground`](crate::Scene::ground); `None` is where the other end is at the start.
         marker: Option<usize>,
     },
 }
@@ -226,7 +226,7 @@ pub struct Coupling {
     pub kind: CouplingKind,
 }
 
-/// How coordinates go together. Joints are numbers in [`System::joints`](crate::System::joints).
+/// How coordinates go together. Joints are numbers in [`Scene::joints`](crate::Scene::joints).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CouplingKind {
     /// `kind = "gear"`: the first joint turns `ratio` times as much as the second.

@@ -1,6 +1,6 @@
 //! The example scene, and how a change to it is refused.
 
-use scene::{Scene, SceneError};
+use scene::{Body, SceneError};
 
 pub const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
@@ -8,7 +8,7 @@ pub const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 pub fn refusal(from: &str, to: &str) -> (String, SceneError) {
     assert_eq!(EXAMPLE.matches(from).count(), 1, "{from:?} is not unique in the example");
     let text = EXAMPLE.replace(from, to);
-    match Scene::parse(&text, "dir/plate.toml") {
+    match Body::parse(&text, "dir/plate.toml") {
         Ok(_) => panic!("{to:?} was accepted"),
         Err(error) => (text, error),
     }

@@ -1,12 +1,12 @@
 //! Whatever the text, the answer is a scene or an error with a message, never a panic.
 
-use scene::Scene;
+use scene::Body;
 
 const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
 /// Reads the text; a refusal must have a place within it and a message.
-fn read(text: &str) -> Result<Scene, String> {
-    Scene::parse(text, "damaged.toml").map_err(|error| {
+fn read(text: &str) -> Result<Body, String> {
+    Body::parse(text, "damaged.toml").map_err(|error| {
         let message = error.to_string();
         let place = error.place().expect("a place in every error of a text");
         let lines = 1 + text.matches('\n').count();

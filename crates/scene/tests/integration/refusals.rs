@@ -1,7 +1,7 @@
 //! Every refusal names file, line, column and key, says what was found and expected, and help.
 
 use crate::common::{EXAMPLE, refusal, refused};
-use scene::{Scene, SceneError};
+use scene::{Body, SceneError};
 
 #[test]
 fn misspelt_keys() {
@@ -59,7 +59,7 @@ fn tables_beside_the_body_and_in_a_body_of_several() {
     }
     let text = "title = 'two'\nunits = { length = 'm', mass = 'kg', time = 's' }\n[bodies.arm]\nmesh = 'arm.msh'\nspeed = 1\n\
                 [time]\nend = 1.0\nstep = 0.1\n";
-    let error = scene::System::parse(text, "two.toml").unwrap_err().to_string();
+    let error = scene::Scene::parse(text, "two.toml").unwrap_err().to_string();
     for words in ["`bodies.arm.speed`: unknown key `speed`", "`markers`, `modes`", "`loads`", "`points`"] {
         assert!(error.contains(words), "{error}");
     }
@@ -113,7 +113,7 @@ fn missing_sections() {
     assert!(error.to_string().ends_with("units = { length = \"mm\", mass = \"Mg\", time = \"s\" }"));
 
     for text in ["", "\n\n", "# nothing"] {
-        let message = Scene::parse(text, "plate.toml").unwrap_err().to_string();
+        let message = Body::parse(text, "plate.toml").unwrap_err().to_string();
         assert!(message.starts_with("plate.toml:1:"), "{message}");
         assert!(message.contains("`title`: `title` is missing"), "{message}");
     }
@@ -564,7 +564,7 @@ fn values_in_groups_and_later_entries_are_named() {
     let groups = "[body.materials.\"sand wich\"]\nyoung_modulus = 1\npoisson_ratio = 0.7\ndensity = 1\n";
     let masses = "point_masses = [ { at = [-500.0, -25.0, 0.0], mass = 0.001 } ]";
     let text = EXAMPLE.replace(material, "").replace("[modes]", &format!("{groups}[modes]"));
-    let error = Scene::parse(&text, "p.toml").unwrap_err();
+    let error = Body::parse(&text, "p.toml").unwrap_err();
     assert_eq!(error.place().unwrap().key, "body.materials.\"sand wich\".poisson_ratio");
     assert!(error.to_string().contains("|                 ^^^\n"), "{error}");
 
@@ -612,7 +612,7 @@ fn reference_points_on_a_line() {
     ] {
         let text = EXAMPLE.replace("R = [-500.0, -25.0, 0.0]", &format!("R = {r}"));
         let text = text.replace("P = [500.0, -25.0, 0.0]", &format!("P = {p}"));
-        Scene::parse(&text.replace("Q = [500.0, 25.0, 0.0]", &format!("Q = {q}")), "").unwrap();
+        Body::parse(&text.replace("Q = [500.0, 25.0, 0.0]", &format!("Q = {q}")), "").unwrap();
     }
 }
 

@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 
-use scene::System;
+use scene::Scene;
 
 const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
 /// Cost of reading a text, and its result.
 struct Read {
-    answer: Result<System, String>,
+    answer: Result<Scene, String>,
     /// Most bytes held meanwhile.
     held: usize,
     /// Allocations.
@@ -20,7 +20,7 @@ struct Read {
 fn read(text: &str, path: &Path) -> Read {
     let mut answer = None;
     let memory = allocation_counter::measure(|| {
-        answer = Some(System::parse(text, path).map_err(|error| error.to_string()));
+        answer = Some(Scene::parse(text, path).map_err(|error| error.to_string()));
     });
     let answer = answer.unwrap();
     if let Err(message) = &answer {

@@ -39,7 +39,7 @@ fn every_scene_of_the_examples_fits_the_schema() {
     assert!(found.len() > 20, "{found:?}");
     for path in found {
         let text = fs::read_to_string(&path).unwrap();
-        if scene::System::parse(&text, &path).is_ok() {
+        if scene::Scene::parse(&text, &path).is_ok() {
             assert_eq!(refusal(&text), None, "{}", path.display());
         }
     }
@@ -61,7 +61,7 @@ fn what_the_program_refuses_by_its_form_the_schema_refuses() {
         let changed = scene.replacen(from, to, 1);
         assert_ne!(changed, scene, "{from}");
         assert!(refusal(&changed).is_some(), "{to}");
-        assert!(scene::System::parse(&changed, root().join("examples/plate.toml")).is_err(), "{to}");
+        assert!(scene::Scene::parse(&changed, root().join("examples/plate.toml")).is_err(), "{to}");
     }
 }
 

@@ -1,6 +1,6 @@
 //! Scenes of several bodies: each body is what it would be in a scene of its own, and faults name their place in the file.
 
-use scene::{Body, LoadKind, Rows, Scene, SceneError, StepControl, System};
+use scene::{Body, BodySource, LoadKind, Rows, Scene, SceneError, StepControl};
 
 const HEAD: &str = "title = 'two'\nunits = { length = 'm', mass = 'kg', time = 's' }\n";
 const TIME: &str = "[time]\nend = 1.0\nstep = 1e-2\n[output]\ninterval = 0.1\n";
@@ -16,29 +16,29 @@ fn two() -> String {
 }
 
 fn refused(text: &str) -> SceneError {
-    System::parse(text, "two.toml").unwrap_err()
+    Scene::parse(text, "two.toml").unwrap_err()
 }
 
 #[test]
 fn each_body_is_what_it_would_be_alone() {
-    let system = System::parse(&two(), "two.toml").unwrap();
-    let [left, right] = &system.bodies[..] else { panic!("{} bodies", system.bodies.len()) };
-    assert_eq!([left, right].map(|scene| scene.name.as_deref()), [Some("left"), Some("the right")]);
+    let scene = Scene::parse(&two(), "two.toml").unwrap();
+    let [left, right] = &scene.bodies[..] else { panic!("{} bodies", scene.bodies.len()) };
+    assert_eq!([left, right].map(|body| body.name.as_deref()), [Some("left"), Some("the right")]);
     let alone = format!(
         "{HEAD}[body]\n{RIGID}\n[initial]\nposition = [0, 3, 0]\n[[loads]]\n{LOADS}{TIME}points = {{ tip = [1, 0, 0] }}\n"
     );
-    let alone = Scene::parse(&alone, "two.toml").unwrap();
-    let of_text = Scene::parse(&left.source, "two.toml").unwrap();
-    let mut expected = Scene { source: left.source.clone(), ..alone };
-    expected.text = left.source.as_str().into();
+    let alone = Body::parse(&alone, "two.toml").unwrap();
+    let of_text = Body::parse(&left.text_alone, "two.toml").unwrap();
+    let mut expected = Body { text_alone: left.text_alone.clone(), ..alone };
+    expected.text = left.text_alone.as_str().into();
     assert_eq!(of_text, expected);
     assert!(matches!(&left.loads[..], [load] if load.kind == LoadKind::Force) && right.loads.is_empty());
-    for scene in [left, right] {
-        let again = Scene::parse(&scene.source, "two.toml").unwrap();
-        assert_eq!((&again.body, &again.initial, &again.loads), (&scene.body, &scene.initial, &scene.loads));
-        assert_eq!((&again.time, &again.output), (&scene.time, &scene.output));
-        assert!(matches!(scene.body, Body::Rigid(_)));
-        assert_eq!((scene.time.control, scene.rows), (StepControl::Fixed(1e-2), Rows::Interval(0.1)));
+    for body in [left, right] {
+        let again = Body::parse(&body.text_alone, "two.toml").unwrap();
+        assert_eq!((&again.source, &again.initial, &again.loads), (&body.source, &body.initial, &body.loads));
+        assert_eq!((&again.time, &again.output), (&body.time, &body.output));
+        assert!(matches!(body.source, BodySource::Rigid(_)));
+        assert_eq!((body.time.control, body.rows), (StepControl::Fixed(1e-2), Rows::Interval(0.1)));
     }
     assert_eq!(right.initial.angular_velocity, [0.0, 0.0, 1.0]);
 }
@@ -46,9 +46,9 @@ fn each_body_is_what_it_would_be_alone() {
 #[test]
 fn a_scene_of_one_body_is_a_system_of_one() {
     let text = format!("{HEAD}[body]\n{RIGID}\n{TIME}");
-    let system = System::parse(&text, "one.toml").unwrap();
-    assert_eq!(system.bodies[0].name, None);
-    assert_eq!(system.bodies, [Scene::parse(&text, "one.toml").unwrap()]);
+    let scene = Scene::parse(&text, "one.toml").unwrap();
+    assert_eq!(scene.bodies[0].name, None);
+    assert_eq!(scene.bodies, [Body::parse(&text, "one.toml").unwrap()]);
 }
 
 #[test]
@@ -67,8 +67,8 @@ fn faults_name_their_place_in_the_file() {
         let place = error.place().unwrap();
         assert_eq!((place.line, place.key.as_str()), (line, key), "{error}");
     }
-    let system = System::parse(&two(), "two.toml").unwrap();
-    let place = system.bodies[0].place("loads[0].at");
+    let scene = Scene::parse(&two(), "two.toml").unwrap();
+    let place = scene.bodies[0].place("loads[0].at");
     assert_eq!((place.line, place.key.as_str()), (9, "bodies.left.loads[0].at"));
 }
 
@@ -91,9 +91,9 @@ fn parts_of_a_body_beside_the_bodies_are_refused_and_so_are_names_that_are_no_na
     for (name, words) in
         [(None, "name one of them: left, the right"), (Some("hub"), "name one of those that are there: left")]
     {
-        let error = Scene::parse_body(&two(), "two.toml", name).unwrap_err().to_string();
+        let error = Body::parse_body(&two(), "two.toml", name).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
     }
     let one = format!("{HEAD}[body]\n{RIGID}\n{TIME}");
-    assert!(Scene::parse_body(&one, "one.toml", Some("hub")).unwrap_err().to_string().contains("leave the name out"));
+    assert!(Body::parse_body(&one, "one.toml", Some("hub")).unwrap_err().to_string().contains("leave the name out"));
 }

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use scene::{History, Interpolation, Scene, SceneError, TablePoints};
+use scene::{Body, History, Interpolation, SceneError, TablePoints};
 
 const EXAMPLE: &str = include_str!("../../src/text/example.toml");
 
 /// The example, its history a table from `pulse.csv` with these bytes.
-fn read(folder: &Path, table: &[u8]) -> Result<Scene, SceneError> {
+fn read(folder: &Path, table: &[u8]) -> Result<Body, SceneError> {
     std::fs::write(folder.join("pulse.csv"), table).unwrap();
     let half_sine = "{ kind = \"half-sine\", start = 0.0, duration = 0.02 }";
     let text = EXAMPLE.replace(half_sine, "{ kind = \"table\", file = \"pulse.csv\" }");
     assert_ne!(text, EXAMPLE);
-    Scene::parse(&text, folder.join("scene.toml"))
+    Body::parse(&text, folder.join("scene.toml"))
 }
 
 #[test]
@@ -27,10 +27,10 @@ fn two_columns_in_every_writing() {
         "# measured\n# t, f\n0,0\n# a remark\n0.5,-1.5\n2,300\n",
         "\u{feff}t,f\n0,0\n0.5,-1.5\n2,300\n",
     ] {
-        let scene = read(folder.path(), text.as_bytes()).unwrap_or_else(|error| panic!("{text:?}: {error}"));
+        let body = read(folder.path(), text.as_bytes()).unwrap_or_else(|error| panic!("{text:?}: {error}"));
         let file = Some(folder.path().join("pulse.csv"));
         assert_eq!(
-            scene.loads[0].history,
+            body.loads[0].history,
             History::Table(TablePoints { points: points.clone(), file, interpolation: Interpolation::Linear }),
             "{text:?}"
         );
@@ -88,7 +88,7 @@ fn a_table_that_cannot_be_read_is_named_in_the_scene() {
     let named = |file: &str| {
         let table = format!("{{ kind = \"table\", file = \"{file}\" }}");
         let text = EXAMPLE.replace("{ kind = \"half-sine\", start = 0.0, duration = 0.02 }", &table);
-        Scene::parse(&text, folder.path().join("scene.toml")).unwrap_err().to_string()
+        Body::parse(&text, folder.path().join("scene.toml")).unwrap_err().to_string()
     };
     #[cfg(unix)]
     assert!(named("/dev/zero").contains("not an ordinary file but a device or a pipe"), "{}", named("/dev/zero"));

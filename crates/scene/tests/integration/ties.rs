@@ -2,8 +2,8 @@
 
 use dynamics::Coordinate;
 use scene::{
-    CouplingKind, End, Joint, JointKind, Locked, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError, System,
-    Tie, Time,
+    Body, CouplingKind, End, Joint, JointKind, Locked, Marker, MarkerAxes, MarkerPlace, Region, Scene, SceneError, Tie,
+    Time,
 };
 
 const HEAD: &str = "title = 'three'\nunits = { length = 'm', mass = 'kg', time = 's' }\n";
@@ -31,8 +31,8 @@ fn three() -> String {
     )
 }
 
-fn parse(text: &str) -> Result<System, SceneError> {
-    System::parse(text, "three.toml")
+fn parse(text: &str) -> Result<Scene, SceneError> {
+    Scene::parse(text, "three.toml")
 }
 
 #[test]
@@ -40,10 +40,10 @@ fn a_constraint_of_a_body_in_joints_is_a_joint_to_the_ground() {
     let with = |constraints: &str| {
         let modes = "modes = { flexible = 4 }";
         let text = three().replacen(modes, &format!("{modes}\nconstraints = [{constraints}]"), 1);
-        let system = parse(&text).unwrap();
-        assert!(system.bodies[0].reduced_constraint().is_none());
+        let scene = parse(&text).unwrap();
+        assert!(scene.bodies[0].reduced_constraint().is_none());
         let of_ground = |joint: &&Joint| joint.key.starts_with("bodies.arm.constraints");
-        system.joints.iter().filter(of_ground).cloned().collect::<Vec<_>>()
+        scene.joints.iter().filter(of_ground).cloned().collect::<Vec<_>>()
     };
     let [hinge] = &with("{ kind = 'hinge', at = [0, 0, 0], axis = [0, 1, 0], group = 'root' }")[..] else { panic!() };
     assert_eq!((&*hinge.key, &*hinge.name), ("bodies.arm.constraints[0]", "arm_constraint1"));
@@ -60,9 +60,9 @@ fn a_constraint_of_a_body_in_joints_is_a_joint_to_the_ground() {
 
 #[test]
 fn all_keys_are_read() {
-    let system = parse(&three()).unwrap();
-    let [arm, hub, block] = &system.bodies[..] else { panic!() };
-    assert_eq!([arm, hub, block].map(|scene| (scene.tied, scene.markers.len())), [(true, 3), (true, 1), (false, 0)]);
+    let scene = parse(&three()).unwrap();
+    let [arm, hub, block] = &scene.bodies[..] else { panic!() };
+    assert_eq!([arm, hub, block].map(|body| (body.tied, body.markers.len())), [(true, 3), (true, 1), (false, 0)]);
     let [tip, root, middle] = &arm.markers[..] else { panic!() };
     assert_eq!(tip.place, MarkerPlace::Region(Region::Group("tip face".into())));
     let Some(MarkerAxes { z, x: Some(x) }) = tip.axes else { panic!() };
@@ -72,7 +72,7 @@ fn all_keys_are_read() {
         Marker { name: "middle".into(), place: MarkerPlace::Point([0.5, 0.0, 0.0]), tie: Tie::Mean, axes: None };
     assert_eq!(*middle, expected);
 
-    let [shoulder, wrist] = &system.joints[..] else { panic!() };
+    let [shoulder, wrist] = &scene.joints[..] else { panic!() };
     assert_eq!(
         (&*shoulder.name, shoulder.kind, shoulder.axis),
         ("shoulder", JointKind::Revolute, Some([0.0, 0.6, 0.8]))
@@ -90,14 +90,14 @@ fn all_keys_are_read() {
     let friction = spring.friction.unwrap();
     assert_eq!((friction.force, friction.rate_scale), (0.5, 1e-3));
 
-    let spring = &system.springs[0];
+    let spring = &scene.springs[0];
     assert_eq!((&*spring.name, spring.stiffness, spring.free_length), ("spring1", 100.0, None));
     assert_eq!(spring.between, [End::Body { body: 0, marker: 2 }, End::Ground { marker: Some(0) }]);
-    let bushing = &system.bushings[0];
+    let bushing = &scene.bushings[0];
     assert_eq!((&*bushing.name, bushing.stiffness.translation), ("rubber", [1.0, 2.0, 3.0]));
     assert_eq!((bushing.stiffness.rotation, bushing.damping.translation), ([0.0; 3], [0.0; 3]));
-    assert_eq!((system.ground[0].at, system.ground[0].axes.unwrap().z), ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]));
-    let place = system.place("joints[1].spring.free");
+    assert_eq!((scene.ground[0].at, scene.ground[0].axes.unwrap().z), ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]));
+    let place = scene.place("joints[1].spring.free");
     assert_eq!((place.line, &*place.key), (38, "joints[1].spring.free"));
 }
 
@@ -108,9 +108,9 @@ fn joints_without_a_kind_and_couplings_are_read_and_refused() {
         "[[couplings]]\nkind = 'rack'\njoints = ['shoulder', 'joint2']\nradius = 0.5\n\
          [[couplings]]\nname = 'thread'\nkind = 'screw'\njoint = 'joint2'\nlead = 1e-3\n[time]",
     );
-    let system = parse(&text).unwrap();
+    let scene = parse(&text).unwrap();
     let locked = Locked { displacements: [true; 3], turns: [true, true, false] };
-    assert_eq!((system.joints[0].kind, JointKind::Revolute.locked()), (JointKind::Other(locked), locked));
+    assert_eq!((scene.joints[0].kind, JointKind::Revolute.locked()), (JointKind::Other(locked), locked));
     let nothing = parse(&format!(
         "{HEAD}[bodies.hub]\n{RIGID}markers = {{ left = {{ at = [0, 0, 0] }} }}\n\
          [[joints]]\nlocked = []\nbetween = ['ground', 'hub.left']\naxis = [0, 0, 1]\n{TIME}"
@@ -118,10 +118,10 @@ fn joints_without_a_kind_and_couplings_are_read_and_refused() {
     .unwrap();
     let none = Locked { displacements: [false; 3], turns: [false; 3] };
     assert_eq!((nothing.joints[0].kind, nothing.joints[0].kind.coordinates()), (JointKind::Other(none), &[][..]));
-    assert_eq!(system.couplings[0].kind, CouplingKind::Rack { joints: [0, 1], radius: 0.5 });
-    let [rack, screw] = [0, 1].map(|i| &*system.couplings[i].name);
+    assert_eq!(scene.couplings[0].kind, CouplingKind::Rack { joints: [0, 1], radius: 0.5 });
+    let [rack, screw] = [0, 1].map(|i| &*scene.couplings[i].name);
     assert_eq!(
-        (rack, screw, system.couplings[1].kind),
+        (rack, screw, scene.couplings[1].kind),
         ("coupling1", "thread", CouplingKind::Screw { joint: 1, lead: 1e-3 })
     );
     for (from, to, key, words) in [
@@ -149,13 +149,13 @@ fn joints_without_a_kind_and_couplings_are_read_and_refused() {
 #[test]
 fn the_text_of_a_body_alone_has_its_markers_and_no_joints() {
     let system = parse(&three().replace("[time]", "[time]\nscheme = 'radau'")).unwrap();
-    for scene in &system.bodies {
-        let alone = Scene::parse(&scene.source, "three.toml").unwrap();
+    for body in &system.bodies {
+        let alone = Body::parse(&body.text_alone, "three.toml").unwrap();
         assert!(!alone.tied);
-        let time = Time { method: *scene.time.method.without_joints(), ..scene.time };
-        assert_eq!((&alone.markers, alone.time), (&scene.markers, time));
-        let named = Scene::parse_body(&scene.text, "three.toml", scene.name.as_deref()).unwrap();
-        assert_eq!(named, *scene);
+        let time = Time { method: *body.time.method.without_joints(), ..body.time };
+        assert_eq!((&alone.markers, alone.time), (&body.markers, time));
+        let named = Body::parse_body(&body.text, "three.toml", body.name.as_deref()).unwrap();
+        assert_eq!(named, *body);
     }
 }
 
@@ -165,10 +165,10 @@ fn one_body_can_be_tied_to_the_ground() {
         "{HEAD}[body]\n{RIGID}markers = {{ top = {{ at = [0, 0, 1] }} }}\n\
          [[joints]]\nkind = 'spherical'\nbetween = ['body.top', 'ground']\n{TIME}scheme = 'radau'\n"
     );
-    let system = parse(&text).unwrap();
-    assert!(system.bodies[0].tied && system.bodies[0].name.is_none());
-    assert_eq!(system.joints[0].between[0], End::Body { body: 0, marker: 0 });
-    assert_eq!(Scene::parse(&text, "three.toml").unwrap(), system.bodies[0]);
+    let scene = parse(&text).unwrap();
+    assert!(scene.bodies[0].tied && scene.bodies[0].name.is_none());
+    assert_eq!(scene.joints[0].between[0], End::Body { body: 0, marker: 0 });
+    assert_eq!(Body::parse(&text, "three.toml").unwrap(), scene.bodies[0]);
     let free = text.replace("[[joints]]\nkind = 'spherical'\nbetween = ['body.top', 'ground']\n", "");
     let error = parse(&free).unwrap_err();
     assert_eq!(error.place().unwrap().key, "time.scheme", "{error}");

@@ -8,8 +8,8 @@ use diagnostic::Failure;
 use flexframe::cost::{self, CostReport, CostSettings, LadderRun, Line, MeasuredRun, duration, price_list, setting};
 use flexframe::model::Builder;
 use flexframe::modes::frequency_unit;
-use flexframe::outputs::outputs_of_scene;
-use flexframe::scene::{Scene, System};
+use flexframe::outputs::outputs_of_body;
+use flexframe::scene::{Body, Scene};
 use flexframe::write_error::WriteError;
 use whole_file::write_whole;
 
@@ -23,7 +23,7 @@ const DECADES: [i32; 6] = [1, 2, 4, 6, 8, 10];
 /// # Errors
 /// [`Failure`].
 pub fn accuracy_page(
-    scenes: &[Scene],
+    scenes: &[Body],
     path: &Path,
     lists: &Path,
     patience: Duration,
@@ -34,7 +34,7 @@ pub fn accuracy_page(
     for scene in scenes {
         let mut files = cost::files(&lists.join(name_of(&scene.path)));
         files.extend([path.to_owned(), picture_of(&scene.path)]);
-        outputs_of_scene(scene, &Builder::default(), overwrite).claim(&files)?;
+        outputs_of_body(scene, &Builder::default(), overwrite).claim(&files)?;
     }
     let mut reports = Vec::new();
     for scene in scenes {
@@ -42,7 +42,7 @@ pub fn accuracy_page(
         let settings = CostSettings::with_patience(patience);
         reports.push((
             scene,
-            price_list(&System::from(Scene::clone(scene)), &Builder::default(), &folder, settings, |_| ())?,
+            price_list(&Scene::from(Body::clone(scene)), &Builder::default(), &folder, settings, |_| ())?,
         ));
     }
     std::fs::create_dir_all(&pictures).map_err(WriteError::of(&pictures))?;
@@ -68,14 +68,14 @@ fn name_of(path: &Path) -> String {
     path.file_stem().unwrap_or("scene".as_ref()).display().to_string()
 }
 
-fn page(reports: &[(&Scene, CostReport)], pictures: &Path) -> String {
+fn page(reports: &[(&Body, CostReport)], pictures: &Path) -> String {
     let mut page = String::new();
     // Writing to a String cannot fail.
     let _ = write_page(&mut page, reports, pictures);
     page
 }
 
-fn write_page(out: &mut String, reports: &[(&Scene, CostReport)], pictures: &Path) -> std::fmt::Result {
+fn write_page(out: &mut String, reports: &[(&Body, CostReport)], pictures: &Path) -> std::fmt::Result {
     writeln!(out, "# The price of accuracy\n")?;
     if let Some((_, report)) = reports.first() {
         writeln!(
@@ -120,10 +120,10 @@ fn write_page(out: &mut String, reports: &[(&Scene, CostReport)], pictures: &Pat
     Ok(())
 }
 
-fn write_scene(out: &mut String, scene: &Scene, report: &CostReport, pictures: &Path) -> std::fmt::Result {
+fn write_scene(out: &mut String, given: &Body, report: &CostReport, pictures: &Path) -> std::fmt::Result {
     let time = &report.time_unit;
-    let file = scene.path.file_name().unwrap_or_default().display();
-    writeln!(out, "\n## {}\n", scene.title)?;
+    let file = given.path.file_name().unwrap_or_default().display();
+    writeln!(out, "\n## {}\n", given.title)?;
     writeln!(
         out,
         "`examples/accuracy/{file}`: {} {time}, {} flexible modes, spin {:.1} rad/{time} at the beginning. The reference \

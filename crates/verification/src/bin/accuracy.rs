@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use flexframe::scene::Scene;
+use flexframe::scene::Body;
 
 /// How long a run may take.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -27,7 +27,7 @@ fn main() -> ExitCode {
 }
 
 fn write(page: &str, scenes: &[String], overwrite: bool) -> Result<(), Box<dyn Error>> {
-    let scenes = scenes.iter().map(Scene::read).collect::<Result<Vec<_>, _>>()?;
+    let scenes = scenes.iter().map(Body::read).collect::<Result<Vec<_>, _>>()?;
     for file in
         verification::accuracy::accuracy_page(&scenes, page.as_ref(), Path::new("out/accuracy"), PATIENCE, overwrite)?
     {

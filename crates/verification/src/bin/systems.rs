@@ -58,7 +58,7 @@ fn nanoseconds() -> Option<u64> {
 
 fn ladder(scene: &Path, [body, point]: [&str; 2], rows: &str, tolerances: &[String]) -> Result<(), Box<dyn Error>> {
     let text = std::fs::read_to_string(scene)?;
-    let system = scene::System::parse(&text, scene)?;
+    let system = scene::Scene::parse(&text, scene)?;
     let built = built(scene.parent().unwrap_or(Path::new(".")), &text)?;
     let number = system.bodies.iter().position(|other| other.name.as_deref() == Some(body)).ok_or("no such body")?;
     let of_system = built.tied.bodies.iter().position(|other| *other == number).ok_or("a body that is not tied")?;

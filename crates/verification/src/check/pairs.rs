@@ -3,7 +3,7 @@
 use model::{Builder, Checker};
 use nalgebra::Vector3;
 use nonlinear::{EquilibriumSettings, NonlinearError, StateErrorSettings, equilibrium, state_error};
-use scene::Scene;
+use scene::Body;
 
 use super::cases::{CheckedCase, MODELS, Truth};
 use super::rest::rest;
@@ -117,7 +117,7 @@ fn build(
     case: &CheckedCase,
     [modes, effects]: [&str; 2],
     [spin, force, gravity]: [f64; 3],
-) -> Result<(Scene, model::Model), String> {
+) -> Result<(Body, model::Model), String> {
     let material = case.material;
     let rest = case.text.replace("SPIN", &format!("{spin:e}")).replace("FORCE", &format!("{force:e}"));
     let rest = rest.replace("GRAVITY", &format!("{gravity:e}"));
@@ -134,7 +134,7 @@ fn build(
         material.density
     );
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scene.toml");
-    let scene = Scene::parse(&text, path).map_err(|error| error.to_string())?;
-    let model = builder.build(&scene, |_| ()).map_err(|error| format!("{}: {error}", case.name))?;
-    Ok((scene, model))
+    let body = Body::parse(&text, path).map_err(|error| error.to_string())?;
+    let model = builder.build(&body, |_| ()).map_err(|error| format!("{}: {error}", case.name))?;
+    Ok((body, model))
 }

@@ -4,20 +4,20 @@ use dynamics::{ConservativeBody, MotionState};
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use model::Model;
-use scene::Scene;
+use scene::Body;
 
 /// Most iterations, and the change over the size that ends them.
 const MOST: usize = 60;
 const CHANGE: f64 = 1e-11;
 
 /// The state of rest of a model, with the spin of its start or of its drive; `None` where there is none.
-pub fn rest(scene: &Scene, model: &Model) -> Option<(ConservativeBody, MotionState)> {
-    let initial = model.initial(scene);
+pub fn rest(given: &Body, model: &Model) -> Option<(ConservativeBody, MotionState)> {
+    let initial = model.initial(given);
     let body = ConservativeBody::new(&model.body, model.damping_ratios(), model.loads().to_vec(), &model.physics);
     let body = body.ok()?.beginning_at(&initial);
     // Of a body that is held, or whose drive holds its spin, the program knows it.
     if model.body.motion.count() == 0 {
-        return Some((body, model.rest(scene).ok()?));
+        return Some((body, model.rest(given).ok()?));
     }
     let nf = model.body.flexible();
     let beginning = initial.state(&model.body);

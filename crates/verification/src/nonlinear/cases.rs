@@ -6,7 +6,7 @@ use dynamics::Observation;
 use fem_tet10::Material;
 use model::Model;
 use nalgebra::Vector3;
-use scene::Scene;
+use scene::Body;
 
 use crate::nonlinear::error::SolidError;
 use crate::nonlinear::mean_axes::mean_axes;
@@ -18,7 +18,7 @@ use crate::nonlinear::solid::Solid;
 ///
 /// # Errors
 /// Errors of the scene.
-pub fn built(mesh: &str, material: Material, rest: &str) -> Result<(Scene, Model), SolidError> {
+pub fn built(mesh: &str, material: Material, rest: &str) -> Result<(Body, Model), SolidError> {
     let Material { young_modulus, poisson_ratio, density } = material;
     let text = format!(
         "title = \"Case\"\nunits = {{ length = \"m\", mass = \"kg\", time = \"s\" }}\n[body]\n\
@@ -27,18 +27,18 @@ pub fn built(mesh: &str, material: Material, rest: &str) -> Result<(Scene, Model
          {rest}"
     );
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scene.toml");
-    let scene = Scene::parse(&text, path).map_err(|error| SolidError::Scene(error.to_string()))?;
-    let model = Model::build(&scene, |_| ()).map_err(|error| SolidError::Scene(error.to_string()))?;
-    Ok((scene, model))
+    let body = Body::parse(&text, path).map_err(|error| SolidError::Scene(error.to_string()))?;
+    let model = Model::build(&body, |_| ()).map_err(|error| SolidError::Scene(error.to_string()))?;
+    Ok((body, model))
 }
 
 /// All rows of a run.
 ///
 /// # Errors
 /// Errors that stop it.
-pub fn rows(scene: &Scene, model: &Model) -> Result<Vec<Observation>, SolidError> {
+pub fn rows(body: &Body, model: &Model) -> Result<Vec<Observation>, SolidError> {
     let failed = |error: &dyn std::error::Error| SolidError::Scene(error.to_string());
-    let run = model.start(scene).map_err(|error| failed(&error))?;
+    let run = model.start(body).map_err(|error| failed(&error))?;
     run.map(|row| row.map_err(|error| failed(&error))).collect()
 }
 
@@ -98,7 +98,7 @@ const L_MODES: &str = "[modes]\nflexible = 8\n";
 ///
 /// # Errors
 /// Errors of the scene.
-pub fn the_l(rest: &str) -> Result<(Scene, Model), SolidError> {
+pub fn the_l(rest: &str) -> Result<(Body, Model), SolidError> {
     built("l", crate::nonlinear::bodies::SOFT, &format!("{L_MODES}{rest}"))
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use dynamics::{Observation, Reached, Rows, Simulation, StepControl, SystemScheme, SystemSetup};
 use model::{Builder, Model, Tied, tie};
-use scene::System;
+use scene::Scene;
 
 use crate::nonlinear::SolidError;
 
@@ -22,9 +22,9 @@ pub struct Built {
 /// Errors of the scene.
 pub fn built(directory: &Path, text: &str) -> Result<Built, SolidError> {
     let failed = |error: &dyn std::error::Error| SolidError::Scene(error.to_string());
-    let system = System::parse(text, directory.join("scene.toml")).map_err(|error| failed(&error))?;
-    let models = Builder::default().models(&system, |_| ()).map_err(|error| failed(&error))?;
-    let tied = tie(&system, &models).map_err(|error| failed(&error))?;
+    let scene = Scene::parse(text, directory.join("scene.toml")).map_err(|error| failed(&error))?;
+    let models = Builder::default().models(&scene, |_| ()).map_err(|error| failed(&error))?;
+    let tied = tie(&scene, &models).map_err(|error| failed(&error))?;
     match <[Tied; 1]>::try_from(tied) {
         Ok([tied]) => Ok(Built { models, tied }),
         Err(all) => Err(SolidError::Scene(format!("{} systems in the place of one", all.len()))),

@@ -2,7 +2,7 @@
 
 use dynamics::Observation;
 use model::Model;
-use scene::{Choice, Effect, Flexible, Scene, StepControl};
+use scene::{Body, Choice, Effect, Flexible, StepControl};
 use verification::nonlinear::{bodies, cases};
 
 /// The soft rod with all that acts on it.
@@ -70,13 +70,13 @@ fn the_motion_is_of_fourth_order_with_large_amplitudes() {
 #[test]
 fn the_plate_keeps_its_energy_for_ten_seconds_in_short_steps() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spinning_plate.toml");
-    let mut scene = Scene::read(path).unwrap();
-    scene.effects.choices[Effect::LargeDeflection] = Choice::Auto;
-    let model = Model::build(&scene, |_| ()).unwrap();
+    let mut body = Body::read(path).unwrap();
+    body.effects.choices[Effect::LargeDeflection] = Choice::Auto;
+    let model = Model::build(&body, |_| ()).unwrap();
     assert_eq!(model.large_modes(), [0]);
     for (step, bound) in [(2e-4, 5e-7), (1e-4, 2e-8), (5e-5, 1e-9)] {
-        scene.time.control = StepControl::Fixed(step);
-        let found = gap(&cases::rows(&scene, &model).unwrap());
+        body.time.control = StepControl::Fixed(step);
+        let found = gap(&cases::rows(&body, &model).unwrap());
         println!("{step:e}: {found:e}");
         assert!(found < bound, "{step:e}: {found:e}");
     }
@@ -87,15 +87,15 @@ fn the_plate_keeps_its_energy_for_ten_seconds_in_short_steps() {
 #[test]
 fn the_plate_keeps_its_energy_far_better_without_the_mode_that_stretches() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spinning_plate.toml");
-    let mut scene = Scene::read(path).unwrap();
-    scene.initial.angular_velocity = [0.0; 3];
-    scene.time.end = 0.25;
-    scene.time.control = StepControl::Fixed(1e-4);
+    let mut body = Body::read(path).unwrap();
+    body.initial.angular_velocity = [0.0; 3];
+    body.time.end = 0.25;
+    body.time.control = StepControl::Fixed(1e-4);
     let [ten, seven] = [10, 7].map(|flexible| {
-        scene.modes.flexible = Flexible::Count(flexible);
-        let model = Model::build(&scene, |_| ()).unwrap();
+        body.modes.flexible = Flexible::Count(flexible);
+        let model = Model::build(&body, |_| ()).unwrap();
         assert_eq!((model.large_modes(), model.static_shapes()), (&[0][..], 0));
-        gap(&cases::rows(&scene, &model).unwrap())
+        gap(&cases::rows(&body, &model).unwrap())
     });
     println!("{ten:e}, with seven modes {seven:e}");
     assert!(ten < 2e-8 && seven < 2e-10, "{ten:e} {seven:e}");

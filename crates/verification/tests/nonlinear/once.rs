@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use dynamics::Observation;
 use model::Model;
-use scene::{Choice, Effect, Large, LoadKind, Scene};
+use scene::{Body, Choice, Effect, Large, LoadKind};
 use verification::nonlinear::cases;
 
 fn example(name: &str) -> PathBuf {
@@ -12,27 +12,27 @@ fn example(name: &str) -> PathBuf {
 }
 
 /// A scene of examples/ with its text changed.
-fn changed(name: &str, changes: &[(&str, &str)]) -> Scene {
+fn changed(name: &str, changes: &[(&str, &str)]) -> Body {
     let mut text = std::fs::read_to_string(example(name)).unwrap();
     for (from, to) in changes {
         assert!(text.contains(from), "{name} has no {from}");
         text = text.replace(from, to);
     }
-    Scene::parse(&text, example(name)).unwrap()
+    Body::parse(&text, example(name)).unwrap()
 }
 
 /// The motion with stiffening alone, or with this number of large modes.
-fn run(scene: &Scene, large: usize) -> (Model, Vec<Observation>) {
-    let mut scene = scene.clone();
-    scene.effects.refuse = false;
-    scene.effects.choices[Effect::LargeDeflection] = if large > 0 { Choice::On } else { Choice::Off };
-    scene.effects.choices[Effect::GeometricStiffening] = Choice::On;
-    scene.effects.choices[Effect::Coriolis] = Choice::On;
-    scene.effects.choices[Effect::DeformedInertia] = Choice::On;
-    scene.modes.large = (large > 0).then_some(Large::Count(large));
-    let model = Model::build(&scene, |_| ()).unwrap();
+fn run(body: &Body, large: usize) -> (Model, Vec<Observation>) {
+    let mut body = body.clone();
+    body.effects.refuse = false;
+    body.effects.choices[Effect::LargeDeflection] = if large > 0 { Choice::On } else { Choice::Off };
+    body.effects.choices[Effect::GeometricStiffening] = Choice::On;
+    body.effects.choices[Effect::Coriolis] = Choice::On;
+    body.effects.choices[Effect::DeformedInertia] = Choice::On;
+    body.modes.large = (large > 0).then_some(Large::Count(large));
+    let model = Model::build(&body, |_| ()).unwrap();
     assert_eq!(model.large_modes().len(), large);
-    let rows = cases::rows(&scene, &model).unwrap();
+    let rows = cases::rows(&body, &model).unwrap();
     (model, rows)
 }
 
@@ -41,19 +41,19 @@ const SAME: f64 = 1e-3;
 
 /// With its initial deformation and its forces so small that it bends by 1e-5 of its length at most, as far as it does so
 /// by itself.
-fn made_small(mut scene: Scene) -> Scene {
-    let (model, rows) = run(&scene, 0);
+fn made_small(mut body: Body) -> Body {
+    let (model, rows) = run(&body, 0);
     let deflection = rows.iter().map(|row| model.deflection(&row.modal_displacement)).fold(0.0, f64::max);
     let part = (1e-5 / deflection).min(1.0);
-    scene.initial.modal_displacement.iter_mut().for_each(|q| *q *= part);
-    scene.initial.modal_velocity.iter_mut().for_each(|v| *v *= part);
-    scene.loads.iter_mut().filter(|load| load.kind == LoadKind::Force).for_each(|load| load.amplitude *= part);
-    scene
+    body.initial.modal_displacement.iter_mut().for_each(|q| *q *= part);
+    body.initial.modal_velocity.iter_mut().for_each(|v| *v *= part);
+    body.loads.iter_mut().filter(|load| load.kind == LoadKind::Force).for_each(|load| load.amplitude *= part);
+    body
 }
 
 /// The largest distance of the large modes from what they are without being large, over the peak; that of the attitude, rad;
 /// and the deflection over the length.
-fn distance(scene: &Scene, large: usize) -> [f64; 3] {
+fn distance(scene: &Body, large: usize) -> [f64; 3] {
     let (model, without) = run(scene, 0);
     let (_, with) = run(scene, large);
     assert_eq!(without.len(), with.len());
@@ -69,8 +69,8 @@ fn distance(scene: &Scene, large: usize) -> [f64; 3] {
     [off / peak, turned, deflection]
 }
 
-fn check(name: &str, scene: &Scene, large: usize, bound: f64) {
-    let [off, turned, deflection] = distance(scene, large);
+fn check(name: &str, body: &Body, large: usize, bound: f64) {
+    let [off, turned, deflection] = distance(body, large);
     println!("{name}: {off:.1e} of the peak, {turned:.1e} rad; deflection {:.4} % of the length", 100.0 * deflection);
     assert!(off < bound && turned < 1e-3, "{name}: {off:e} {turned:e}");
 }
@@ -99,10 +99,10 @@ fn spinning_plates_are_the_same_with_large_modes() {
     let plates =
         [("accuracy/spin", 0.05), ("accuracy/tumbling", SAME), ("spinning_plate", SAME), ("tumbling_plate", SAME)];
     for (name, bound) in plates {
-        let mut scene = changed(name, &[("flexible = 10", "flexible = 7")]);
-        scene.modes.static_correction = Choice::Off;
-        scene.time.end = scene.time.end.min(0.5);
-        check(name, &made_small(scene), 2, bound);
+        let mut body = changed(name, &[("flexible = 10", "flexible = 7")]);
+        body.modes.static_correction = Choice::Off;
+        body.time.end = body.time.end.min(0.5);
+        check(name, &made_small(body), 2, bound);
     }
 }
 
@@ -119,7 +119,7 @@ fn beams_that_spin_up_slowly_are_the_same_with_large_modes() {
             (end, "end = 170.0"),
             ("interval = 0.02", "interval = 0.1"),
         ];
-        let scene = changed(name, &changes);
-        check(name, &scene, 4, SAME);
+        let body = changed(name, &changes);
+        check(name, &body, 4, SAME);
     }
 }

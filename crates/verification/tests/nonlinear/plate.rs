@@ -3,7 +3,7 @@
 use dynamics::{Method, Observation, Rows};
 use model::Model;
 use nalgebra::Vector3;
-use scene::{Body, Choice, Effect, Large, Materials, Scene, StepControl};
+use scene::{Body, BodySource, Choice, Effect, Large, Materials, StepControl};
 use verification::nonlinear::{NodalState, Solid, SolidMotion, bodies, cases, mean_axes};
 
 /// Independent reference: the nonlinear finite elements of this crate.
@@ -11,21 +11,21 @@ use verification::nonlinear::{NodalState, Solid, SolidMotion, bodies, cases, mea
 #[ignore = "minutes: just nonlinear"]
 fn the_static_energy_of_the_first_mode_is_that_of_the_whole_mesh() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plate.toml");
-    let mut scene = Scene::read(path).unwrap();
-    scene.loads.clear();
-    scene.time.method = Method::EXPONENTIAL;
-    scene.effects.choices[Effect::LargeDeflection] = Choice::On;
-    scene.effects.refuse = false;
-    scene.modes.large = Some(Large::Count(1));
-    let Body::Meshed(body) = &scene.body else { panic!("no mesh") };
-    let Materials::Uniform(material) = body.materials else { panic!("materials") };
-    let mesh = fem_tet10::read_msh(&body.mesh).unwrap();
-    let solid = Solid::with_masses(mesh, material, &body.point_masses, |_| false).unwrap();
-    let model = Model::build(&scene, |_| ()).unwrap();
+    let mut body = Body::read(path).unwrap();
+    body.loads.clear();
+    body.time.method = Method::EXPONENTIAL;
+    body.effects.choices[Effect::LargeDeflection] = Choice::On;
+    body.effects.refuse = false;
+    body.modes.large = Some(Large::Count(1));
+    let BodySource::Meshed(meshed) = &body.source else { panic!("no mesh") };
+    let Materials::Uniform(material) = meshed.materials else { panic!("materials") };
+    let mesh = fem_tet10::read_msh(&meshed.mesh).unwrap();
+    let solid = Solid::with_masses(mesh, material, &meshed.point_masses, |_| false).unwrap();
+    let model = Model::build(&body, |_| ()).unwrap();
     let omega = model.body.circular_frequencies[0];
     for q in [0.1, 0.25, 0.5] {
-        scene.initial.modal_displacement = vec![q];
-        let first = model.start(&scene).unwrap().observation().unwrap();
+        body.initial.modal_displacement = vec![q];
+        let first = model.start(&body).unwrap().observation().unwrap();
         let found = first.strain_energy / (0.5 * (omega * q).powi(2)) - 1.0;
         let expected = cases::static_energy(&solid, &model, 0, q).unwrap();
         println!("{q}: {found:.5e}, nonlinear elements {expected:.5e}, off by {:.2e}", found / expected - 1.0);
@@ -35,21 +35,22 @@ fn the_static_energy_of_the_first_mode_is_that_of_the_whole_mesh() {
 }
 
 /// The plate with elements of 60 mm that begins undeformed, with a spin and rates of its first modes.
-fn spinning(rates: &[f64]) -> (Scene, Solid) {
+fn spinning(rates: &[f64]) -> (Body, Solid) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/spinning_plate.toml");
-    let mut scene = Scene::read(path).unwrap();
-    let Body::Meshed(body) = &mut scene.body else { panic!("no mesh") };
-    body.mesh = bodies::mesh_path("plate_60");
-    let Materials::Uniform(material) = body.materials else { panic!("materials") };
-    let solid = Solid::with_masses(bodies::mesh("plate_60").unwrap(), material, &body.point_masses, |_| false).unwrap();
-    scene.initial.angular_velocity = SPIN.into();
-    scene.initial.modal_displacement = Vec::new();
-    scene.initial.modal_velocity = rates.to_vec();
-    scene.time.end = 0.25;
-    scene.time.control = StepControl::Fixed(5e-5);
-    scene.rows = Rows::Interval(1e-3);
-    scene.effects.refuse = false;
-    (scene, solid)
+    let mut body = Body::read(path).unwrap();
+    let BodySource::Meshed(meshed) = &mut body.source else { panic!("no mesh") };
+    meshed.mesh = bodies::mesh_path("plate_60");
+    let Materials::Uniform(material) = meshed.materials else { panic!("materials") };
+    let solid =
+        Solid::with_masses(bodies::mesh("plate_60").unwrap(), material, &meshed.point_masses, |_| false).unwrap();
+    body.initial.angular_velocity = SPIN.into();
+    body.initial.modal_displacement = Vec::new();
+    body.initial.modal_velocity = rates.to_vec();
+    body.time.end = 0.25;
+    body.time.control = StepControl::Fixed(5e-5);
+    body.rows = Rows::Interval(1e-3);
+    body.effects.refuse = false;
+    (body, solid)
 }
 
 const SPIN: Vector3<f64> = Vector3::new(6.0, 30.0, 60.0);

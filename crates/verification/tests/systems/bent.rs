@@ -105,9 +105,9 @@ fn a_cantilever_on_a_fixed_joint_bends_as_one_that_is_clamped() {
                 .replace(", history", "\nhistory")
                 .replace(", at", "\nat")
         );
-        let scene = scene::Scene::parse(&text, directory.path().join("scene.toml")).unwrap();
-        let model = model::Model::build(&scene, |_| ()).unwrap();
-        let alone = cases::rows(&scene, &model).unwrap().last().unwrap().points[0].displacement;
+        let body = scene::Body::parse(&text, directory.path().join("scene.toml")).unwrap();
+        let model = model::Model::build(&body, |_| ()).unwrap();
+        let alone = cases::rows(&body, &model).unwrap().last().unwrap().points[0].displacement;
         let mut of_joint = f64::INFINITY;
         for (what, moved) in
             [("joint", in_joint), ("clamp", alone), ("joint, small modes", found("flexible = 16, damping_ratio = 0.7"))]

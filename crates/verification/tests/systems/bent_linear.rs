@@ -83,8 +83,8 @@ fn the_static_answer_about_a_bent_rest_is_the_change_of_the_rest() {
     };
     let part = 1e-3;
     let expected = (at_tip(load * (1.0 + part)) - at_tip(load * (1.0 - part))) / (2.0 * part);
-    let system = scene::System::parse(&text(load), directory.path().join("scene.toml")).unwrap();
-    let model = linear_model(&system, &model::Builder::default(), &LinearSettings::default(), |_| ()).unwrap();
+    let scene = scene::Scene::parse(&text(load), directory.path().join("scene.toml")).unwrap();
+    let model = linear_model(&scene, &model::Builder::default(), &LinearSettings::default(), |_| ()).unwrap();
     let equations = model.equations;
     let (n, input) = (equations.stiffness.nrows(), 0);
     let matrix = nalgebra::DMatrix::from_fn(n, n, |i, j| equations.stiffness[(i, j)]);

@@ -50,7 +50,7 @@ fn errors(size: [f64; 3], cells: [usize; 3], keys: &str) -> ([f64; 2], Option<us
         "title = 'whole'\nunits = {{ length = 'm', mass = 'kg', time = 's' }}\n[body]\nmesh = 'whole.msh'\n{MATERIAL}\
          [modes]\nflexible = 8\n[time]\nend = 1.0\nstep = 1e-4\n"
     );
-    let scene = scene::Scene::parse(&text, directory.path().join("whole.toml")).unwrap();
+    let scene = scene::Body::parse(&text, directory.path().join("whole.toml")).unwrap();
     let whole = model::Model::build(&scene, |_| ()).unwrap();
     let errors: Vec<f64> = found.iter().zip(&whole.body.circular_frequencies).map(|(a, b)| a / b - 1.0).collect();
     let warp = halves.models[0].markers[0].warp.clone();

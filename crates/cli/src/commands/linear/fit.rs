@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::fit::{self, FitSettings};
-use flexframe::outputs::{Written, outputs_of_system};
+use flexframe::outputs::{Written, outputs_of_scene};
 use scene::{Measured, Shared};
 
 use crate::arguments::values::positive;
@@ -46,18 +46,18 @@ impl Fit {
     pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, measured, parameters, deviation, modes, output, files } = self;
         output::require_file("--output", output.as_deref())?;
-        let system = session.read_one(scene, modes)?;
+        let scene = session.read_one(scene, modes)?;
         if let Some(output) = &output {
-            let mut outputs = outputs_of_system(&system, &session.builder, files.overwrite);
+            let mut outputs = outputs_of_scene(&scene, &session.builder, files.overwrite);
             if let Some(measured) = &measured {
                 outputs = outputs.and_input(measured);
             }
             outputs.claim_as(&Written::SCENE, output)?;
-            check_beside(&system, output)?;
+            check_beside(&scene, output)?;
         }
         let measured = measured.as_deref().map(Measured::read).transpose()?;
         let settings = FitSettings { parameters, measured, deviation };
-        let report = fit::fit(&system, &session.builder, &settings, output.as_deref(), |p| session.bar.build(p))
+        let report = fit::fit(&scene, &session.builder, &settings, output.as_deref(), |p| session.bar.build(p))
             .map_err(|error| modes.refusal(error))?;
         drop(session.bar);
         output::print(&report, json)

@@ -36,8 +36,8 @@ impl Frf {
     pub fn execute(self, session: Session) -> Result<(), Failure> {
         let Self { scene, about, frequencies, log, structural, out } = self;
         let settings = FrfSettings { linear: about.settings(), frequencies, logarithmic: log, loss_factor: structural };
-        session.answer(scene, &out, &frf::FILES, &[], |session, system| {
-            frf::frf(system, &session.builder, &settings, |p| session.bar.build(p))
+        session.answer(scene, &out, &frf::FILES, &[], |session, scene| {
+            frf::frf(scene, &session.builder, &settings, |p| session.bar.build(p))
         })
     }
 }

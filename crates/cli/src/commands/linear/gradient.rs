@@ -4,7 +4,7 @@ use clap::Args;
 use diagnostic::Failure;
 use flexframe::frequencies::Frequencies;
 use flexframe::gradient::{self, GradientSettings};
-use flexframe::outputs::outputs_of_system;
+use flexframe::outputs::outputs_of_scene;
 
 use crate::arguments::values::frequencies;
 use crate::arguments::{FolderArgs, ModeCountArgs, SceneArgs};
@@ -38,12 +38,12 @@ impl Gradient {
     pub fn execute(self, session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, parameters, frequencies, modes, out } = self;
         out.check()?;
-        let system = session.read_one(scene, modes)?;
-        let outputs = outputs_of_system(&system, &session.builder, out.files.overwrite);
+        let scene = session.read_one(scene, modes)?;
+        let outputs = outputs_of_scene(&scene, &session.builder, out.files.overwrite);
         let settings = GradientSettings { parameters, frequencies };
         let files = gradient::files(&settings);
-        session.report(outputs, &out.folder(&system.path), &files, json, |session| {
-            let report = gradient::gradient(&system, &session.builder, &settings, |p| session.bar.build(p));
+        session.report(outputs, &out.folder(&scene.path), &files, json, |session| {
+            let report = gradient::gradient(&scene, &session.builder, &settings, |p| session.bar.build(p));
             report.map_err(|error| modes.refusal(error))
         })
     }

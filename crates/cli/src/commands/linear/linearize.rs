@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::linearize::{self, Reduction};
-use flexframe::outputs::outputs_of_system;
+use flexframe::outputs::outputs_of_scene;
 
 use crate::arguments::{FileArgs, LinearArgs, SceneArgs};
 use crate::output;
@@ -37,15 +37,14 @@ impl Linearize {
     pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, about, reduce, output, files } = self;
         output::require_file("--output", output.as_deref())?;
-        let system = session.read_system(scene)?;
+        let scene = session.read_scene(scene)?;
         let file = match output {
             Some(file) => file,
-            None => folder(&system, None)?.join("linear.mat"),
+            None => folder(&scene, None)?.join("linear.mat"),
         };
-        outputs_of_system(&system, &session.builder, files.overwrite).claim(std::slice::from_ref(&file))?;
-        let report = linearize::linearize(&system, &session.builder, &about.settings(), reduce, &file, |p| {
-            session.bar.build(p)
-        })?;
+        outputs_of_scene(&scene, &session.builder, files.overwrite).claim(std::slice::from_ref(&file))?;
+        let report =
+            linearize::linearize(&scene, &session.builder, &about.settings(), reduce, &file, |p| session.bar.build(p))?;
         drop(session.bar);
         output::print(&report, json)
     }

@@ -47,8 +47,8 @@ impl Psd {
             "a CSV file of frequencies and densities (docs/reference/cli.md)",
         )?;
         let settings = PsdSettings { linear: about.settings(Vec::new(), outputs), band, loss_factor: structural };
-        session.answer(scene, &out, &psd::FILES, &[&spectra], |session, system| {
-            psd::psd(system, &session.builder, &spectra, &settings, |p| session.bar.build(p))
+        session.answer(scene, &out, &psd::FILES, &[&spectra], |session, scene| {
+            psd::psd(scene, &session.builder, &spectra, &settings, |p| session.bar.build(p))
         })
     }
 }

@@ -41,10 +41,10 @@ impl Shock {
     pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, table, interpolation, input, about, outputs } = self;
         GivenFile::expect(&table, &[GivenFile::Table], "a CSV file of times and values (docs/reference/cli.md)")?;
-        let system = session.read_system(scene)?;
+        let scene = session.read_scene(scene)?;
         let settings = about.settings(vec![input], outputs);
         let table = (table.as_path(), interpolation);
-        let report = shock::shock(&system, &session.builder, table, &settings, |p| session.bar.build(p))?;
+        let report = shock::shock(&scene, &session.builder, table, &settings, |p| session.bar.build(p))?;
         drop(session.bar);
         output::print(&report, json)
     }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use diagnostic::Failure;
 use flexframe::animation::{AnimationSettings, Coloured, MAX_FRAMES, animate, animate_mode, animate_results};
 use flexframe::figures::View;
-use flexframe::outputs::{Written, outputs_of_results, outputs_of_system};
+use flexframe::outputs::{Written, outputs_of_results, outputs_of_scene};
 use model::Needs;
 
 use crate::arguments::FileArgs;
@@ -79,16 +79,16 @@ impl Animate {
                 animate_results(file, &output, settings, |p| session.bar.run(p))?
             }
             None => {
-                let system = session.read_system(scene)?;
+                let scene = session.read_scene(scene)?;
                 let builder = session.builder.needing(Needs::without_rows());
-                outputs_of_system(&system, &session.builder, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
+                outputs_of_scene(&scene, &session.builder, files.overwrite).claim_as(&Written::ANIMATION, &output)?;
                 match mode {
                     Some(mode) => {
                         let mode = usize::try_from(mode).unwrap_or(usize::MAX);
-                        animate_mode(&system, &builder, mode, &output, settings, |p| session.bar.run(p))?;
+                        animate_mode(&scene, &builder, mode, &output, settings, |p| session.bar.run(p))?;
                         None
                     }
-                    None => animate(&system, &builder, &output, settings, |p| session.bar.run(p))?,
+                    None => animate(&scene, &builder, &output, settings, |p| session.bar.run(p))?,
                 }
             }
         };

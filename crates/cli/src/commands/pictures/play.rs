@@ -25,11 +25,11 @@ pub struct Play {
 impl Play {
     pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene, port } = self;
-        let system = session.read_system(scene)?;
+        let scene = session.read_scene(scene)?;
         let served = Served::new(port)?;
         let folder = TemporaryFolder::new().map_err(CliError::Folder)?;
         let settings = RunSettings { check: false, ..session.settings(true) };
-        let (_, report) = run::run(&system, folder.path(), &settings, |p| {
+        let (_, report) = run::run(&scene, folder.path(), &settings, |p| {
             session.signals.heard(p);
             session.bar.run(p);
         })?;

@@ -4,7 +4,7 @@ use advice::Subject;
 use dynamics::{Effect, EffectMap, Observation, Rows, StepControl};
 use model::{ModeCount, Model, Needs, Variants};
 use nalgebra::{Matrix3, Vector3};
-use scene::Scene;
+use scene::Body;
 use serde::Serialize;
 
 use crate::commands::run::{RunError, RunFailure};
@@ -33,7 +33,7 @@ pub enum Real {
 
 /// The scene as it is.
 pub(super) struct Base<'a, 'b> {
-    scene: &'a Scene,
+    scene: &'a Body,
     model: &'a Model,
     needs: &'a Needs,
     builder: &'a mut Variants<'b>,
@@ -42,16 +42,16 @@ pub(super) struct Base<'a, 'b> {
 
 impl<'a, 'b> Base<'a, 'b> {
     pub(super) fn new(
-        scene: &'a Scene,
+        body: &'a Body,
         needs: &'a Needs,
         model: &'a Model,
         builder: &'a mut Variants<'b>,
     ) -> Result<Self, RunError> {
         // Settled as the others are, so that nothing but the switch is between them.
-        let settled = settled(needs, scene, model, None);
-        let motion = follow(scene, needs, &builder.build(scene, &settled, |_| ())?)
-            .map_err(|source| RunError::Verify { scene: scene.path.clone(), source: Box::new(source) })?;
-        Ok(Self { scene, needs, model, builder, motion })
+        let settled = settled(needs, body, model, None);
+        let motion = follow(body, needs, &builder.build(body, &settled, |_| ())?)
+            .map_err(|source| RunError::Verify { scene: body.path.clone(), source: Box::new(source) })?;
+        Ok(Self { scene: body, needs, model, builder, motion })
     }
 
     /// The difference that switching an effect or the static shapes makes.
@@ -105,12 +105,12 @@ impl<'a, 'b> Base<'a, 'b> {
 }
 
 /// Needs with all effects and static shapes as a model has them, but for one that is switched.
-pub(crate) fn settled(needs: &Needs, scene: &Scene, model: &Model, switched: Option<(Subject, bool)>) -> Needs {
+pub(crate) fn settled(needs: &Needs, body: &Body, model: &Model, switched: Option<(Subject, bool)>) -> Needs {
     let natural = model.body.flexible() - model.static_shapes();
     let has_all = switched == Some((FLEXIBILITY, true));
     let choose = |subject: Subject| match switched {
         Some((of, on)) if of == subject => on,
-        _ => is_on(scene, model, subject).unwrap_or(false),
+        _ => is_on(body, model, subject).unwrap_or(false),
     };
     let large: Vec<usize> =
         model.large_modes().iter().filter(|k| model.static_answer() != Some(**k)).map(|k| k + 1).collect();
@@ -123,13 +123,13 @@ pub(crate) fn settled(needs: &Needs, scene: &Scene, model: &Model, switched: Opt
     }
 }
 
-fn follow(scene: &Scene, needs: &Needs, model: &Model) -> Result<Vec<Observation>, RunFailure> {
-    let control = scene.time.control;
+fn follow(body: &Body, needs: &Needs, model: &Model) -> Result<Vec<Observation>, RunFailure> {
+    let control = body.time.control;
     let interval = match control {
-        StepControl::Fixed(step) => (scene.time.end / step / COMPARED).ceil() * step,
-        StepControl::Tolerance(_) => scene.time.end / COMPARED,
+        StepControl::Fixed(step) => (body.time.end / step / COMPARED).ceil() * step,
+        StepControl::Tolerance(_) => body.time.end / COMPARED,
     };
-    let method = needs.method_of(scene);
-    let simulation = model.start_with(scene, method, control, Rows::Interval(interval))?;
+    let method = needs.method_of(body);
+    let simulation = model.start_with(body, method, control, Rows::Interval(interval))?;
     Ok(simulation.collect::<Result<Vec<_>, _>>()?)
 }

@@ -11,7 +11,7 @@ use nonlinear::{
     EquilibriumSettings, ExternalForces, FullBody, NonlinearError, SpinVibration, equilibrium, spin_vibrations,
 };
 use reduced_body::ReducedBody;
-use scene::Scene;
+use scene::Body;
 
 use super::family::Family;
 
@@ -34,15 +34,15 @@ pub enum AboutRest {
 }
 
 /// The full body of a scene, where it has one.
-pub(super) fn full(scene: &Scene, builder: &Builder) -> Result<FullModel, Failure> {
-    let full = builder.full(scene, |_| ())?;
-    full.ok_or_else(|| no_full_body(scene))
+pub(super) fn full(body: &Body, builder: &Builder) -> Result<FullModel, Failure> {
+    let full = builder.full(body, |_| ())?;
+    full.ok_or_else(|| no_full_body(body))
 }
 
-fn no_full_body(scene: &Scene) -> Failure {
-    let found = scene.body.not_by_elements().unwrap_or("a body without elements");
+fn no_full_body(body: &Body) -> Failure {
+    let found = body.source.not_by_elements().unwrap_or("a body without elements");
     let expected = "one with a mesh, whose rest at each speed can be found";
-    Kind::Usage.of(&scene.path).found(found).expected(expected).help("leave `--about-rest` out").into()
+    Kind::Usage.of(&body.path).found(found).expected(expected).help("leave `--about-rest` out").into()
 }
 
 /// Deflection over the length, by the linear answer to a spin; none where it does not bend the body.
@@ -59,7 +59,7 @@ pub(super) fn deflection(model: &Model, axis: &Vector3<f64>, speed: f64) -> Opti
 
 /// The full body in a spin about an axis.
 pub(super) struct BentSpin<'a> {
-    scene: &'a Scene,
+    scene: &'a Body,
     body: FullBody<'a>,
     axis: Vector3<f64>,
     /// Modes and static shapes of the undeformed body (3n×k), and M times them: shapes are compared in these coordinates.
@@ -107,11 +107,11 @@ impl Family for BentSpin<'_> {
 }
 
 impl<'a> BentSpin<'a> {
-    pub fn new(scene: &'a Scene, full: &'a FullModel, model: &'a Model, axis: &Vector3<f64>) -> Result<Self, Failure> {
-        let Some(meshed) = &model.meshed else { return Err(no_full_body(scene)) };
-        let body = full.body().map_err(|source| source.in_file(&scene.path))?;
+    pub fn new(given: &'a Body, full: &'a FullModel, model: &'a Model, axis: &Vector3<f64>) -> Result<Self, Failure> {
+        let Some(meshed) = &model.meshed else { return Err(no_full_body(given)) };
+        let body = full.body().map_err(|source| source.in_file(&given.path))?;
         Ok(Self {
-            scene,
+            scene: given,
             axis: *axis,
             shapes: &meshed.modes.shapes,
             momenta: body.momenta_of(meshed.modes.shapes.as_ref()),

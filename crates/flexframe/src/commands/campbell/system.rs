@@ -7,7 +7,7 @@ use dynamics::{Effect, Rotor, RotorError, SteadyError, SystemMotion};
 use model::{Builder, Needs};
 use nalgebra::Vector3;
 use report::Report;
-use scene::System;
+use scene::Scene;
 
 use super::diagram::diagram;
 use super::report::{Diagram, SpinEffects};
@@ -36,26 +36,26 @@ pub struct SystemCampbellSettings {
 /// # Errors
 /// [`Failure`].
 pub fn campbell_of_system(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     settings: &SystemCampbellSettings,
     mut progress: impl FnMut(CampbellProgress),
 ) -> Result<Report, Failure> {
     let speeds = checked(settings.speeds, &settings.orders)?;
-    let models = builder.needing(Needs::spin()).models(system, |p| progress(CampbellProgress::Build(p)))?;
-    let motions = tied_motions(system, &models)?;
+    let models = builder.needing(Needs::spin()).models(scene, |p| progress(CampbellProgress::Build(p)))?;
+    let motions = tied_motions(scene, &models)?;
     let Some(motion) = motions.first() else {
-        let alone = Kind::Usage.of(&system.path).found("bodies that nothing ties together");
+        let alone = Kind::Usage.of(&scene.path).found("bodies that nothing ties together");
         return Err(alone.expected("joints, springs or bushings").help("name one body: --body NAME").into());
     };
     let of_motion = motion.run.motion();
     let Axis { direction: axis, point, joint } = axis_of(motion, settings).map_err(|found| match found {
-        Found::Nothing(found) => no_axis(system, &found, of_motion.system().joints()),
+        Found::Nothing(found) => no_axis(scene, &found, of_motion.system().joints()),
         Found::NoDirection(error) => error,
     })?;
     let rotor = joint.map(|joint| rotor_of(of_motion, joint)).transpose().map_err(|source| {
         let joint = joint.map_or_else(String::new, |joint| of_motion.system().joints()[joint].name.clone());
-        let known = source.diagnosis().in_file(&system.path);
+        let known = source.diagnosis().in_file(&scene.path);
         known.says(format!("joint {joint:?}, whose other bodies are held: {source}"))
     })?;
     let rotor = rotor.flatten();
@@ -68,7 +68,7 @@ pub fn campbell_of_system(
     });
     let find = |speed: f64| {
         let failed = |source: SteadyError| {
-            source.diagnosis().in_file(&system.path).says(format!("at {speed} rad per time: {source}"))
+            source.diagnosis().in_file(&scene.path).says(format!("at {speed} rad per time: {source}"))
         };
         let modes = match &rotor {
             Some(rotor) => of_motion.rotor_modes(rotor, speed, &others.spinning),
@@ -87,8 +87,8 @@ pub fn campbell_of_system(
     let circular_frequencies =
         diagram.branches.iter().flat_map(|branch| &branch.frequency).map(|frequency| frequency * TAU);
     let diagram = Diagram {
-        bodies: body_names(system, &motion.bodies),
-        rotor: rotor.map(|rotor| body_names(system, &motion.bodies).swap_remove(rotor.body)),
+        bodies: body_names(scene, &motion.bodies),
+        rotor: rotor.map(|rotor| body_names(scene, &motion.bodies).swap_remove(rotor.body)),
         warnings: others.warnings(circular_frequencies),
         rotors: others.found,
         axis: axis.into(),
@@ -100,17 +100,17 @@ pub fn campbell_of_system(
         }),
         ..diagram
     };
-    Ok(diagram.report(&system.title, [&system.units.length, &system.units.time], &settings.orders))
+    Ok(diagram.report(&scene.title, [&scene.units.length, &scene.units.time], &settings.orders))
 }
 
 /// The refusal of a system whose axis of the spin is not known.
-fn no_axis(system: &System, found: &str, joints: &[dynamics::Joint]) -> Failure {
+fn no_axis(scene: &Scene, found: &str, joints: &[dynamics::Joint]) -> Failure {
     let names: Vec<&str> = joints.iter().map(|joint| &*joint.name).collect();
     let expected = format!(
         "--axis, an axis through the center of mass, or --joint, whose axis it is: one of {}",
         names.join(", ")
     );
-    Kind::Usage.of(&system.path).found(found).expected(expected).help("name one").into()
+    Kind::Usage.of(&scene.path).found(found).expected(expected).help("name one").into()
 }
 
 /// Reason that there is no axis.

@@ -5,7 +5,7 @@ use std::path::Path;
 use diagnostic::{Diagnostic, Failure};
 use model::{BuildError, Model, TieForce, Tied, tie};
 use results::Results;
-use scene::System;
+use scene::Scene;
 
 use super::rows;
 
@@ -14,15 +14,15 @@ pub(super) struct Ties(Vec<Tied>);
 
 impl Ties {
     /// The systems of a scene.
-    pub fn new(system: &System, models: &[Model]) -> Result<Self, BuildError> {
-        Ok(Self(if system.has_ties() { tie(system, models)? } else { Vec::new() }))
+    pub fn new(scene: &Scene, models: &[Model]) -> Result<Self, BuildError> {
+        Ok(Self(if scene.has_ties() { tie(scene, models)? } else { Vec::new() }))
     }
 
     /// The forces on a body in a row, at its markers.
     pub fn forces(
         &self,
         file: &Path,
-        (results, system, models): (&Results, &System, &[Model]),
+        (results, system, models): (&Results, &Scene, &[Model]),
         body: usize,
         row: usize,
     ) -> Result<Vec<TieForce>, Failure> {

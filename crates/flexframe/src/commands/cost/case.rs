@@ -2,7 +2,7 @@
 
 use dynamics::{Method, Rows, Run, SetupError, StepControl};
 use model::{Model, StartError};
-use scene::{Scene, System};
+use scene::{Body, Scene};
 
 use super::run::Scales;
 use crate::commands::run::{RunBody, RunFailure};
@@ -13,26 +13,26 @@ const COMPARED: u64 = 100;
 
 /// A scene with a model of each body.
 pub(super) struct PreparedScene<'a> {
-    system: System,
+    system: Scene,
     models: Vec<&'a Model>,
     scales: Vec<Scales>,
 }
 
 impl<'a> PreparedScene<'a> {
-    pub(super) fn new(system: System, models: Vec<&'a Model>) -> Self {
-        let bodies = system.bodies.iter().zip(&models);
-        let scales = bodies.map(|(scene, model)| Scales::of_body(model, scene.time.end)).collect();
-        Self { system, models, scales }
+    pub(super) fn new(scene: Scene, models: Vec<&'a Model>) -> Self {
+        let bodies = scene.bodies.iter().zip(&models);
+        let scales = bodies.map(|(body, model)| Scales::of_body(model, body.time.end)).collect();
+        Self { system: scene, models, scales }
     }
 
     /// One body.
-    pub(super) fn alone(scene: &Scene, model: &'a Model) -> Self {
-        Self::new(scene.clone().into(), vec![model])
+    pub(super) fn alone(body: &Body, model: &'a Model) -> Self {
+        Self::new(body.clone().into(), vec![model])
     }
 
     /// The bodies.
     pub(super) fn bodies(&self) -> impl Iterator<Item = RunBody<'_>> {
-        self.system.bodies.iter().zip(&self.models).map(|(scene, model)| RunBody { scene, model })
+        self.system.bodies.iter().zip(&self.models).map(|(body, model)| RunBody { body, model })
     }
 
     pub(super) fn end(&self) -> f64 {

@@ -2,7 +2,7 @@
 
 use dynamics::{Method, StepControl};
 use model::Model;
-use scene::Scene;
+use scene::Body;
 use serde::Serialize;
 
 use super::case::PreparedScene;
@@ -49,18 +49,18 @@ pub(super) fn counts(flexible: usize, most: usize) -> Vec<usize> {
 /// # Errors
 /// The number of modes with which the motion could not be run, and why.
 pub(super) fn compare(
-    scene: &Scene,
+    body: &Body,
     models: &[Model],
     settings: &CostSettings,
 ) -> Result<Vec<ModesRow>, (usize, RunFailure)> {
     let Some(richest) = models.last() else { return Ok(Vec::new()) };
     let method = Method::EXPONENTIAL;
     let budget = settings.budget(5);
-    let most = converge(&PreparedScene::alone(scene, richest), method, budget, CONVERGED)
+    let most = converge(&PreparedScene::alone(body, richest), method, budget, CONVERGED)
         .map_err(|(_, failure)| (richest.body.flexible(), failure))?;
     let control = StepControl::Fixed(most.step);
     let row = |model: &Model| -> Result<ModesRow, RunFailure> {
-        let case = PreparedScene::alone(scene, model);
+        let case = PreparedScene::alone(body, model);
         let begun = case.begin(method, control)?;
         let seconds_per_step = seconds_per_step(&begun, settings.timed_for)?;
         let run = Trajectory::follow(begun, budget.time)?;

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use diagnostic::{Failure, Kind};
 use keys::{Digest, Hash};
-use scene::{Scene, System};
+use scene::{Body, Scene};
 use serde::{Deserialize, Serialize};
 
 /// Its name among the resources.
@@ -90,19 +90,19 @@ impl Manifest {
     }
 
     /// The bodies, and what ties them together.
-    pub(super) fn system(&self, resources: &Path) -> Result<System, Failure> {
+    pub(super) fn system(&self, resources: &Path) -> Result<Scene, Failure> {
         if let Some(file) = &self.system {
-            return Ok(System::read(resources.join(file))?);
+            return Ok(Scene::read(resources.join(file))?);
         }
-        let scene = |PackedBody { name, scene }: &PackedBody| -> Result<Scene, Failure> {
-            Ok(Scene { name: name.clone(), ..Scene::read(resources.join(scene))? })
+        let body = |PackedBody { name, scene }: &PackedBody| -> Result<Body, Failure> {
+            Ok(Body { name: name.clone(), ..Body::read(resources.join(scene))? })
         };
-        let bodies = self.bodies.iter().map(scene).collect::<Result<Vec<Scene>, Failure>>()?;
+        let bodies = self.bodies.iter().map(body).collect::<Result<Vec<Body>, Failure>>()?;
         let first = bodies
             .first()
             .ok_or_else(|| Kind::Input.alone().help("give one or more").says("there is no body to pack"))?
             .clone();
-        Ok(System { bodies, ..first.into() })
+        Ok(Scene { bodies, ..first.into() })
     }
 }
 

@@ -6,7 +6,7 @@ use diagnostic::Failure;
 use dynamics::{Coordinate, RotationShapes};
 use model::{BuildProgress, Builder, Model, Needs};
 use results::{Metadata, histories};
-use scene::{Scene, System};
+use scene::{Body, Scene};
 
 use super::manifest::Manifest;
 use super::si_unit::seconds;
@@ -26,15 +26,15 @@ pub struct FmuModel {
     /// Seconds in the scene's unit of time: FMI counts time in seconds.
     pub seconds: f64,
     /// Its bodies and what ties them together, in the words of the scene.
-    pub system: System,
+    pub system: Scene,
     metadata: Metadata,
 }
 
 /// A body of an FMU.
 #[derive(Debug)]
 pub struct FmuBody {
-    /// Its scene.
-    pub scene: Scene,
+    /// The body of the scene.
+    pub body: Body,
     /// Its model.
     pub model: Model,
     /// How the points of the output are turned by the modes.
@@ -46,18 +46,18 @@ impl FmuModel {
     ///
     /// # Errors
     /// [`Failure`].
-    pub fn new(system: System, builder: &Builder, mut progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
+    pub fn new(scene: Scene, builder: &Builder, mut progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
         let builder = builder.needing(Needs::external_inputs());
-        let bodies = system.bodies.iter().map(|scene| FmuBody::new(scene, &builder, &mut progress));
+        let bodies = scene.bodies.iter().map(|body| FmuBody::new(body, &builder, &mut progress));
         let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
         let models: Vec<&Model> = bodies.iter().map(|body| &body.model).collect();
-        let beginning = StartSettings::of(&system, &models);
-        begin(&system, &models, &beginning).map_err(|error| error.at_key(&system))?;
-        let of_run: Vec<_> = bodies.iter().map(|FmuBody { scene, model, .. }| RunBody { scene, model }).collect();
-        let mut metadata = run::metadata_of_system(&system, &of_run);
-        add_motors(&system, &mut metadata);
-        let variables = variables(&system, &of_run, &metadata);
-        Ok(Self { variables, seconds: seconds(&system.units), metadata, bodies, system })
+        let beginning = StartSettings::of(&scene, &models);
+        begin(&scene, &models, &beginning).map_err(|error| error.at_key(&scene))?;
+        let of_run: Vec<_> = bodies.iter().map(|FmuBody { body, model, .. }| RunBody { body, model }).collect();
+        let mut metadata = run::metadata_of_scene(&scene, &of_run);
+        add_motors(&scene, &mut metadata);
+        let variables = variables(&scene, &of_run, &metadata);
+        Ok(Self { variables, seconds: seconds(&scene.units), metadata, bodies, system: scene })
     }
 
     /// The model in the resources of an FMU, which have been [checked](Manifest::checked).
@@ -76,16 +76,16 @@ impl FmuModel {
 }
 
 impl FmuBody {
-    fn new(scene: &Scene, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
-        let model = builder.build(scene, progress)?;
-        let rotations = model.point_rotations(scene)?;
-        Ok(Self { scene: scene.clone(), model, rotations })
+    fn new(body: &Body, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
+        let model = builder.build(body, progress)?;
+        let rotations = model.point_rotations(body)?;
+        Ok(Self { body: body.clone(), model, rotations })
     }
 }
 
 /// Gives each joint the columns of a motor along its coordinates, since that is an input.
-fn add_motors(system: &System, metadata: &mut Metadata) {
-    for (joint, of) in system.joints.iter().zip(&mut metadata.joints) {
+fn add_motors(scene: &Scene, metadata: &mut Metadata) {
+    for (joint, of) in scene.joints.iter().zip(&mut metadata.joints) {
         for along in joint.kind.coordinates() {
             let acts = match along {
                 Coordinate::Turn => part::TURN_FORCE,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use diagnostic::{Diagnostic, Failure, Kind};
 use model::{BuildProgress, Builder, Needs, StartError};
-use scene::{Body, Flexible, MeshedBody, Scene, Shared, System};
+use scene::{Body, BodySource, Flexible, MeshedBody, Scene, Shared};
 use sealed::{Format, SealedFile};
 use serde::Serialize;
 use whole_file::{TemporaryFolder, write_whole};
@@ -82,7 +82,7 @@ impl FmuReport {
 ///
 /// # Errors
 /// [`Failure`] for a file that is no body file of this version, and for a scene that breaks a rule.
-pub fn scene_of_body(file: &Path) -> Result<Scene, Failure> {
+pub fn scene_of_body(file: &Path) -> Result<Body, Failure> {
     let body = SealedFile::open(file, Format::BODY)?;
     let text = body.text("scene").ok_or_else(|| {
         let help = "make it again: flexframe reduce SCENE -o FILE";
@@ -92,7 +92,7 @@ pub fn scene_of_body(file: &Path) -> Result<Scene, Failure> {
     let name = std::path::absolute(file).unwrap_or_else(|_| file.to_owned()).display().to_string();
     scene.insert("body".to_owned(), toml::Table::from_iter([("file".to_owned(), toml::Value::from(name))]).into());
     let text = toml::to_string(&scene).map_err(cannot_pack)?;
-    Ok(Scene::parse(&text, file)?)
+    Ok(Body::parse(&text, file)?)
 }
 
 /// Packs the bodies of a scene as an FMU, whole or not at all.
@@ -100,41 +100,41 @@ pub fn scene_of_body(file: &Path) -> Result<Scene, Failure> {
 /// # Errors
 /// [`Failure`].
 pub fn pack(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     output: &Path,
     settings: &FmuSettings,
     mut progress: impl FnMut(BuildProgress),
 ) -> Result<FmuReport, Failure> {
-    let scenes = &system.bodies[..];
+    let scenes = &scene.bodies[..];
     scenes.iter().try_for_each(check)?;
-    let is_tied = system.has_ties();
-    if system.joints.is_empty() && system.springs.is_empty() && system.bushings.is_empty() {
+    let is_tied = scene.has_ties();
+    if scene.joints.is_empty() && scene.springs.is_empty() && scene.bushings.is_empty() {
         // One of several that are tied.
-        let tied = scenes.iter().find_map(|scene| Some((scene, StartError::refuse_tied(scene).err()?)));
-        if let Some((scene, source)) = tied {
-            return Err(source.in_file(&scene.path));
+        let tied = scenes.iter().find_map(|body| Some((body, StartError::refuse_tied(body).err()?)));
+        if let Some((body, source)) = tied {
+            return Err(source.in_file(&body.path));
         }
     }
     let library = Library::find(settings.library.as_deref())?;
     let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
     let resources = temporary.path();
     let (mut names, mut bodies) = (Vec::new(), Vec::new());
-    let file = is_tied.then(|| pack_system(system, resources, &mut names)).transpose()?;
-    for (i, scene) in scenes.iter().enumerate() {
+    let file = is_tied.then(|| pack_whole(scene, resources, &mut names)).transpose()?;
+    for (i, body) in scenes.iter().enumerate() {
         if let Some(file) = &file {
-            bodies.push(PackedBody { name: scene.name.clone(), scene: file.clone() });
+            bodies.push(PackedBody { name: body.name.clone(), scene: file.clone() });
             continue;
         }
         // The only body of its own scene has no number.
-        let prefix = scene.name.as_ref().map_or_else(String::new, |_| format!("{}-", i + 1));
-        bodies.push(pack_body((scene, builder), resources, &prefix, &mut names, &mut progress)?);
+        let prefix = body.name.as_ref().map_or_else(String::new, |_| format!("{}-", i + 1));
+        bodies.push(pack_body((body, builder), resources, &prefix, &mut names, &mut progress)?);
     }
     let manifest = Manifest::of(resources, &names, (bodies, file))?;
     // What is packed is what will be opened. Its files have been found by now; messages name the scene that was given.
     let opened = manifest.system(resources)?;
     let mut opened =
-        opened.with_shared(|shared| Shared { path: system.path.clone(), text: system.text.clone(), ..shared });
+        opened.with_shared(|shared| Shared { path: scene.path.clone(), text: scene.text.clone(), ..shared });
     for (opened, given) in opened.bodies.iter_mut().zip(scenes) {
         opened.source.clone_from(&given.source);
     }
@@ -151,29 +151,29 @@ pub fn pack(
 }
 
 /// Refuses a body that cannot be packed.
-fn check(scene: &Scene) -> Result<(), Failure> {
-    if let (true, Body::Meshed(body)) = (scene.tied, &scene.body)
-        && body.mesh.extension().is_none_or(|ending| ending != "msh")
+fn check(body: &Body) -> Result<(), Failure> {
+    if let (true, BodySource::Meshed(meshed)) = (body.tied, &body.source)
+        && meshed.mesh.extension().is_none_or(|ending| ending != "msh")
     {
         let help = "convert it with gmsh or meshio: the FMU holds the meshes of tied bodies, and reads them without other programs";
-        return Err(scene.refuse("body.mesh", "a mesh of another format", "one in MSH 4.1 (.msh)", help).into());
+        return Err(body.refuse("body.mesh", "a mesh of another format", "one in MSH 4.1 (.msh)", help).into());
     }
-    if matches!(scene.body, Body::Matrices(_)) {
+    if matches!(body.source, BodySource::Matrices(_)) {
         let (found, expected) =
             ("a body of matrices, which no body file holds yet", "a body with a mesh, or a rigid one");
-        return Err(scene.refuse("body.matrices", found, expected, "give the body a mesh to pack it").into());
+        return Err(body.refuse("body.matrices", found, expected, "give the body a mesh to pack it").into());
     }
-    if let (false, Body::Meshed(body)) = (scene.tied, &scene.body)
-        && !body.tied_masses.is_empty()
+    if let (false, BodySource::Meshed(meshed)) = (body.tied, &body.source)
+        && !meshed.tied_masses.is_empty()
     {
         let found = "masses beside the body, which the body file in an FMU does not have";
         let help = format!("{}: the FMU of bodies in joints holds their meshes", MeshedBody::WITHOUT_TIED_MASSES);
-        return Err(scene.refuse("body.tied_masses", found, "`point_masses`, or none", help).into());
+        return Err(body.refuse("body.tied_masses", found, "`point_masses`, or none", help).into());
     }
-    if !matches!(scene.modes.flexible, Flexible::Count(_)) {
+    if !matches!(body.modes.flexible, Flexible::Count(_)) {
         let help = "give the number of modes to keep; `flexframe modes` shows their frequencies";
         let found = "\"auto\", which goes by the loads of the scene";
-        return Err(scene
+        return Err(body
             .refuse("modes.flexible", found, "a number, since nobody knows the forces from outside", help)
             .into());
     }
@@ -181,7 +181,7 @@ fn check(scene: &Scene) -> Result<(), Failure> {
 }
 
 /// Writes the scene of bodies that are tied together, its tables and meshes into the resources, and adds their names.
-fn pack_system(scene: &Shared, resources: &Path, names: &mut Vec<String>) -> Result<String, Failure> {
+fn pack_whole(scene: &Shared, resources: &Path, names: &mut Vec<String>) -> Result<String, Failure> {
     let folder = scene.path.parent().unwrap_or(Path::new(""));
     let packed = PackedScene::of_system(&scene.text, folder)?;
     let name = "scene.toml".to_owned();
@@ -197,16 +197,16 @@ fn pack_system(scene: &Shared, resources: &Path, names: &mut Vec<String>) -> Res
 
 /// Writes the scene of a body, its tables and its body file into the resources, and adds their names.
 fn pack_body(
-    (scene, builder): (&Scene, &Builder),
+    (scene, builder): (&Body, &Builder),
     resources: &Path,
     prefix: &str,
     names: &mut Vec<String>,
     progress: &mut impl FnMut(BuildProgress),
 ) -> Result<PackedBody, Failure> {
     let [scene_name, body_name] = ["scene.toml", "body.h5"].map(|name| format!("{prefix}{name}"));
-    let body_file = (!matches!(scene.body, Body::Rigid(_))).then_some(body_name);
+    let body_file = (!matches!(scene.source, BodySource::Rigid(_))).then_some(body_name);
     let folder = scene.path.parent().unwrap_or(Path::new(""));
-    let packed = PackedScene::new(&scene.source, folder, body_file.as_deref(), prefix)?;
+    let packed = PackedScene::new(&scene.text_alone, folder, body_file.as_deref(), prefix)?;
     let place = resources.join(&scene_name);
     std::fs::write(&place, &packed.text).map_err(WriteError::of(&place))?;
     names.push(scene_name.clone());

@@ -3,7 +3,7 @@
 use dynamics::{Coordinate, DrivenMotion, Effect};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use results::{Components, Dimension, History, JointMetadata, Metadata, Role, histories};
-use scene::{End, Load, System};
+use scene::{End, Load, Scene};
 
 use crate::commands::run::RunBody;
 use crate::rows::columns::COLUMNS;
@@ -72,13 +72,13 @@ pub struct Variable {
 }
 
 /// All variables of a model: the time, the inputs of each body, then the columns of a results file.
-pub(super) fn variables(system: &System, bodies: &[RunBody<'_>], metadata: &Metadata) -> Vec<Variable> {
+pub(super) fn variables(scene: &Scene, bodies: &[RunBody<'_>], metadata: &Metadata) -> Vec<Variable> {
     let mut all =
         vec![Variable { name: "time".to_owned(), description: "time".to_owned(), unit: "time", source: Source::Time }];
     for (i, body) in bodies.iter().enumerate() {
         inputs(i, body, &Of::body(metadata, i), &mut all);
     }
-    motors(system, &mut all);
+    motors(scene, &mut all);
     let mut place = 0;
     for history in histories(&COLUMNS, metadata) {
         let count = history.width(metadata);
@@ -118,14 +118,14 @@ impl Of {
     }
 }
 
-fn inputs(body: usize, RunBody { scene, model }: &RunBody<'_>, of: &Of, all: &mut Vec<Variable>) {
+fn inputs(number: usize, RunBody { body, model }: &RunBody<'_>, of: &Of, all: &mut Vec<Variable>) {
     let Of { prefix, words } = of;
     let mut add = |name: String, description: String, unit: &'static str, kind: InputKind| {
-        let source = Source::Input(Input { body, kind });
+        let source = Source::Input(Input { body: number, kind });
         all.push(Variable { name: format!("{prefix}{name}"), description, unit, source });
     };
     let acts = |load: &Load| model.physics.effects[Effect::Gravity] || !load.is_gravity();
-    for (acting, (i, _)) in scene.loads.iter().enumerate().filter(|(_, load)| acts(load)).enumerate() {
+    for (acting, (i, _)) in body.loads.iter().enumerate().filter(|(_, load)| acts(load)).enumerate() {
         let whole = if words.is_empty() { " of the scene" } else { words };
         let description = format!("factor on load {}{whole}, counted from 1, beside its own history", i + 1);
         add(format!("loads[{}].factor", i + 1), description, "1", InputKind::Factor(acting));
@@ -153,8 +153,8 @@ fn inputs(body: usize, RunBody { scene, model }: &RunBody<'_>, of: &Of, all: &mu
 }
 
 /// A motor along each coordinate of each joint.
-fn motors(system: &System, all: &mut Vec<Variable>) {
-    for (number, joint) in system.joints.iter().enumerate() {
+fn motors(scene: &Scene, all: &mut Vec<Variable>) {
+    for (number, joint) in scene.joints.iter().enumerate() {
         let Some(body) = joint.between.iter().find_map(End::body) else { continue };
         for along in joint.kind.coordinates() {
             let (what, words, unit) = match along {

@@ -6,7 +6,7 @@ use diagnostic::Failure;
 use model::Model;
 use nalgebra::Vector3;
 use results::kind::NATURAL_MODE;
-use scene::Scene;
+use scene::Body;
 use serde_json::{Value, json};
 
 use crate::commands::modes::{require_flexible, require_surface};
@@ -70,9 +70,9 @@ impl Buffer {
 }
 
 /// The bytes of the file.
-pub fn bytes(scene: &Scene, model: &Model) -> Result<Vec<u8>, Failure> {
-    require_surface(scene)?;
-    let meshed = require_flexible(scene, model)?;
+pub fn bytes(body: &Body, model: &Model) -> Result<Vec<u8>, Failure> {
+    require_surface(body)?;
+    let meshed = require_flexible(body, model)?;
     let surface = Surface::of_model(model);
     let single = |v: &[f64; 3]| v.map(|x| x as f32);
     let mut buffer = Buffer::default();
@@ -93,7 +93,7 @@ pub fn bytes(scene: &Scene, model: &Model) -> Result<Vec<u8>, Failure> {
         let moved: Vec<[f32; 3]> = shape.iter().map(|u| single(&(u * scale).into())).collect();
         targets.push(json!({ "POSITION": buffer.vectors(&moved) }));
         names.push(match kinds[k] {
-            NATURAL_MODE => format!("mode {}: {frequency:.4} per {}", k + 1, scene.units.time),
+            NATURAL_MODE => format!("mode {}: {frequency:.4} per {}", k + 1, body.units.time),
             kind => format!("{kind} {}", k + 1),
         });
     }
@@ -116,7 +116,7 @@ pub fn bytes(scene: &Scene, model: &Model) -> Result<Vec<u8>, Failure> {
         "asset": { "version": "2.0", "generator": concat!("flexframe ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,
         "scenes": [{ "nodes": [0] }],
-        "nodes": [{ "name": scene.title, "mesh": 0 }],
+        "nodes": [{ "name": body.title, "mesh": 0 }],
         "materials": [{ "doubleSided": true, "pbrMetallicRoughness": {
             "baseColorFactor": [0.62, 0.68, 0.75, 1.0], "metallicFactor": 0.1, "roughnessFactor": 0.7 } }],
         "meshes": [{

@@ -5,7 +5,7 @@ use dynamics::{PointShapes, RotationShapes};
 use faer::Mat;
 use model::{BodyMarker, MarkerPart, Model, UnknownTurns};
 use nalgebra::{Matrix3, Matrix6, Vector3};
-use scene::{Scene, key_path};
+use scene::{Body, key_path};
 
 use super::interface::Place;
 use crate::commands::modes::require_flexible;
@@ -66,17 +66,17 @@ pub struct Node {
 
 impl<'a> Reduced<'a> {
     /// The numbers of a model, with points of the output and then markers as nodes.
-    pub fn new(scene: &'a Scene, model: &'a Model) -> Result<Self, Failure> {
-        require_flexible(scene, model)?;
+    pub fn new(given: &'a Body, model: &'a Model) -> Result<Self, Failure> {
+        require_flexible(given, model)?;
         if !model.large_modes().is_empty() {
             let help = "set `large_deflection = false` in [effects] for the linear body";
             let found = "a body with large modes, which none of these forms knows";
-            return Err(scene.refuse("modes.large", found, "a body whose modes are small", help).into());
+            return Err(given.refuse("modes.large", found, "a body whose modes are small", help).into());
         }
         let body = &model.body;
         let count = body.flexible();
         let turns = match model.has_point_rotations() {
-            true => model.point_rotations(scene)?,
+            true => model.point_rotations(given)?,
             false => {
                 let unknown = Mat::zeros(3, count);
                 model.points.iter().map(|_| RotationShapes::new(body, unknown.as_ref())).collect()
@@ -89,7 +89,7 @@ impl<'a> Reduced<'a> {
             turns: turns[RIGID..].to_vec(),
         };
         let mut points: Vec<_> = model.points.iter().zip(&turns).collect();
-        points.sort_by_cached_key(|((name, _), _)| place_of_point(scene, name));
+        points.sort_by_cached_key(|((name, _), _)| place_of_point(given, name));
         let of_points = points
             .iter()
             .map(|((name, point), turn)| node(name, point.position_body(), point.columns(), turn.columns()));
@@ -111,7 +111,7 @@ impl<'a> Reduced<'a> {
             (0..count).map(|k| Vector3::from_fn(|i, _| parts[i][k])).collect()
         };
         Ok(Self {
-            title: &scene.title,
+            title: &given.title,
             mass: body.mass,
             center: body.center_of_mass - body.origin,
             inertia: body.inertia,
@@ -169,8 +169,8 @@ impl<'a> Reduced<'a> {
 }
 
 /// Line and column of a point of the output in the scene file.
-fn place_of_point(scene: &Scene, name: &str) -> (usize, usize) {
-    let place = scene.place(&key_path("output.points", name));
+fn place_of_point(body: &Body, name: &str) -> (usize, usize) {
+    let place = body.place(&key_path("output.points", name));
     (place.line, place.column)
 }
 

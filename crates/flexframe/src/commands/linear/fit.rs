@@ -11,9 +11,10 @@ use ::report::Report;
 use diagnostic::{Failure, Kind};
 use faer::Mat;
 use model::{BuildProgress, Builder};
-use scene::{Measured, System};
+use scene::{Measured, Scene};
 
-use self::report::{CONFIDENCE, Fitted, FittedMode, FittedParameter};
+use self::report::CONFIDENCE;
+pub use self::report::{Fitted, FittedMode, FittedParameter};
 use least_squares::{Fault, Residuals, Solution, Unseen, solve};
 use subject::{Found, Subject};
 
@@ -32,7 +33,7 @@ pub struct FitSettings {
 }
 
 /// A body, or bodies in joints, that are fitted to measured frequencies.
-struct Fit {
+pub struct Fit {
     subject: Subject,
     measured: Measured,
     /// A standard deviation for each measured frequency: as stated, or the frequency itself where none is.
@@ -42,24 +43,47 @@ struct Fit {
 
 impl Fit {
     /// The fit of a scene of one body, or of bodies in joints.
-    fn new(
-        system: &System,
+    ///
+    /// # Errors
+    /// [`Failure`] of parameters and tables that do not fit the scene or each other.
+    pub fn new(
+        scene: &Scene,
         builder: &Builder,
         settings: &FitSettings,
         progress: impl FnMut(BuildProgress),
     ) -> Result<Self, Failure> {
-        let of_scene = || system.bodies.iter().find_map(|scene| scene.modes.measured.clone());
+        let of_scene = || scene.bodies.iter().find_map(|body| body.modes.measured.clone());
         let measured = settings.measured.clone().or_else(of_scene).ok_or_else(|| {
             let found = "no measured frequencies: found neither --measured nor `measured` in [modes] of the scene";
             Kind::Usage.alone().help("name a CSV file with a column `frequency`: --measured test.csv").says(found)
         })?;
-        let subject = Subject::new(system, builder, &settings.parameters, &measured, progress)?;
+        let subject = Subject::new(scene, builder, &settings.parameters, &measured, progress)?;
         let (deviations, is_stated) = deviations(&measured, settings.deviation)?;
         Ok(Self { subject, measured, deviations, is_stated })
     }
 
+    /// Frequencies of the modes that were measured, in the scene as it is.
+    ///
+    /// # Errors
+    /// [`Failure`].
+    pub fn frequencies(&self) -> Result<Vec<f64>, Failure> {
+        Ok(self.residuals(&vec![0.0; self.subject.names().len()])?.frequencies)
+    }
+
+    /// Gives the lines of the table other measured frequencies, with the same relative deviations.
+    pub fn set_frequencies(&mut self, frequencies: &[f64]) {
+        let lines = self.measured.modes.iter_mut().zip(&mut self.deviations);
+        for ((mode, deviation), frequency) in lines.zip(frequencies) {
+            *deviation *= frequency / mode.frequency;
+            mode.frequency = *frequency;
+        }
+    }
+
     /// Finds the parameters.
-    fn run(&self) -> Result<Fitted, Failure> {
+    ///
+    /// # Errors
+    /// [`Failure`] of parameters that the frequencies do not tell, and where no values are found.
+    pub fn run(&self) -> Result<Fitted, Failure> {
         let names = self.subject.names();
         let start = vec![0.0; names.len()];
         let limits = |x: &[f64]| self.is_within(x);
@@ -132,13 +156,13 @@ impl Fit {
 /// [`Failure`] of parameters and tables that do not fit the scene or each other, of parameters that the frequencies do not tell, and where no
 /// values are found.
 pub fn fit(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     settings: &FitSettings,
     output: Option<&Path>,
     progress: impl FnMut(BuildProgress),
 ) -> Result<Report, Failure> {
-    let fit = Fit::new(system, builder, settings, progress)?;
+    let fit = Fit::new(scene, builder, settings, progress)?;
     fit.run()?.report(fit.subject.scene(), output)
 }
 

@@ -7,7 +7,7 @@ use faer::c64;
 use linear::{Damping, FrequencyResponse, SecondOrder};
 use model::{BuildProgress, Builder};
 use report::{Chart, Curve, Curves, File, Form, Report, Table, Value};
-use scene::System;
+use scene::Scene;
 
 use crate::commands::linear::frequencies::Frequencies;
 use crate::commands::linear::linearize::{AtOnce, LinearSettings, linear_model};
@@ -49,7 +49,7 @@ struct Response<'a> {
 /// # Errors
 /// [`Failure`].
 pub fn frf(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     settings: &FrfSettings,
     progress: impl FnMut(BuildProgress),
@@ -58,19 +58,19 @@ pub fn frf(
         true => settings.frequencies.by_ratios(MAX_FREQUENCIES),
         false => settings.frequencies.evenly(MAX_FREQUENCIES),
     }?;
-    let mut model = linear_model(system, builder, &settings.linear, progress)?;
+    let mut model = linear_model(scene, builder, &settings.linear, progress)?;
     if let Some(loss_factor) = settings.loss_factor {
         model.state.damping = structural(loss_factor);
     }
     let equations = &model.equations;
     let response = equations.frequency_response(&frequencies, damping_of(settings.loss_factor));
-    let response = response.map_err(|source| source.in_file(&system.path))?;
+    let response = response.map_err(|source| source.in_file(&scene.path))?;
     let responses = responses(equations, &response);
     let resonances =
-        resonances(&equations.poles(damping_of(settings.loss_factor)).map_err(|e| e.in_file(&system.path))?);
-    let unit = frequency_unit(&system.units.time);
+        resonances(&equations.poles(damping_of(settings.loss_factor)).map_err(|e| e.in_file(&scene.path))?);
+    let unit = frequency_unit(&scene.units.time);
 
-    let mut report = Report::new(&system.title);
+    let mut report = Report::new(&scene.title);
     report.put("frequency_unit", &unit);
     report.say("about", "about", model.state.to_string());
     let highest = responses.iter().map(|of| of.magnitude[of.highest]);

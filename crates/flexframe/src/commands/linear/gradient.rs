@@ -12,7 +12,7 @@ mod varying;
 use ::report::{File, Report};
 use diagnostic::Failure;
 use model::{BuildProgress, Builder, Parameter, RatesOf};
-use scene::System;
+use scene::Scene;
 
 use self::report::Rates;
 use crate::commands::linear::frequencies::Frequencies;
@@ -42,7 +42,7 @@ pub fn files(settings: &GradientSettings) -> Vec<File> {
 /// # Errors
 /// [`Failure`].
 pub fn gradient(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     settings: &GradientSettings,
     progress: impl FnMut(BuildProgress),
@@ -51,10 +51,10 @@ pub fn gradient(
         Some(asked) => asked.evenly(MAX_FREQUENCIES)?,
         None => Vec::new(),
     };
-    let numbers = Number::named(system, &settings.parameters)?;
-    let rates = match Varied::new(system, builder, progress)? {
+    let numbers = Number::named(scene, &settings.parameters)?;
+    let rates = match Varied::new(scene, builder, progress)? {
         Varied::System(varied) => {
-            Rates::of_system(system, &numbers, varied.rates(system, &numbers, &frequencies)?, frequencies)
+            Rates::of_system(scene, &numbers, varied.rates(scene, &numbers, &frequencies)?, frequencies)
         }
         Varied::Body(body) => {
             let parameters: Vec<Parameter> = numbers.iter().filter_map(Number::parameter).cloned().collect();
@@ -62,5 +62,5 @@ pub fn gradient(
             Rates::new(&body, &parameters, &found, frequencies)
         }
     };
-    Ok(rates.report(system))
+    Ok(rates.report(scene))
 }

@@ -23,7 +23,7 @@ use dynamics::{Initial, MotionState};
 use linear::{LinearError, SecondOrder};
 use model::{BuildProgress, Builder, Model, Needs};
 use nalgebra::Vector3;
-use scene::System;
+use scene::Scene;
 
 pub use at_once::AtOnce;
 use at_time::{moving_modes, states_at};
@@ -50,23 +50,23 @@ pub struct LinearModel {
 /// # Errors
 /// [`Failure`].
 pub fn linear_model(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     settings: &LinearSettings,
     progress: impl FnMut(BuildProgress),
 ) -> Result<LinearModel, Failure> {
-    // A motion that the scene does not call for is one that an input may: of a free body any, of a held one a vibration.
-    let builder = builder.needing(match &system.bodies[..] {
-        [scene] if scene.reduced_constraint().is_none() => Needs::external_inputs(),
+    // A motion that the body does not call for is one that an input may: of a free body any, of a held one a vibration.
+    let builder = builder.needing(match &scene.bodies[..] {
+        [body] if body.reduced_constraint().is_none() => Needs::external_inputs(),
         _ => Needs::vibrations(),
     });
-    let models = builder.models(system, progress)?;
-    let refuse = |found: &str, help: &str| Kind::Refused.of(&system.path).help(help).says(found);
+    let models = builder.models(scene, progress)?;
+    let refuse = |found: &str, help: &str| Kind::Refused.of(&scene.path).help(help).says(found);
     let is_free = |model: &Model| model.body.motion.is_free() && model.physics.drive.is_none();
-    let states = settings.time.map(|time| states_at(system, &models, time)).transpose()?;
-    let is_alone = models.len() == 1 && !system.has_connections();
-    let (channels, mut state) = match (&system.bodies[..], &models[..]) {
-        ([scene], [model]) if is_alone && !is_free(model) => {
+    let states = settings.time.map(|time| states_at(scene, &models, time)).transpose()?;
+    let is_alone = models.len() == 1 && !scene.has_connections();
+    let (channels, mut state) = match (&scene.bodies[..], &models[..]) {
+        ([body], [model]) if is_alone && !is_free(model) => {
             if settings.spin.is_some() {
                 return Err(refuse("--spin of a body that is held", "give its hinge the speed, as `motion`"));
             }
@@ -76,22 +76,22 @@ pub fn linear_model(
                     origin: Some(state.origin_global),
                     ..Initial::at_rest(model.body.flexible())
                 },
-                _ => model.initial(scene),
+                _ => model.initial(body),
             };
-            held::of_held(scene, model, (&initial, settings.time.unwrap_or(0.0)), settings)?
+            held::of_held(body, model, (&initial, settings.time.unwrap_or(0.0)), settings)?
         }
-        (scenes, models) if models.iter().all(is_free) => {
+        (bodies, models) if models.iter().all(is_free) => {
             let of_state = |state: &MotionState| state.attitude.global_to_body().transpose() * state.omega_body;
-            let own = || match (scenes, models, states.as_deref()) {
+            let own = || match (bodies, models, states.as_deref()) {
                 (_, [_], Some([state, ..])) if is_alone => Some(of_state(state)),
-                ([scene], [model], None) if is_alone => {
-                    let initial = model.initial(scene);
+                ([body], [model], None) if is_alone => {
+                    let initial = model.initial(body);
                     Some(initial.attitude.global_to_body().transpose() * initial.omega)
                 }
                 _ => None,
             };
             let spin = settings.spin.map(Vector3::from).or_else(own);
-            of_system::of_system(system, models, spin, states.as_deref(), settings)?
+            of_system::of_system(scene, models, spin, states.as_deref(), settings)?
         }
         _ => {
             return Err(refuse(
@@ -103,7 +103,7 @@ pub fn linear_model(
     if let Some(states) = &states {
         state.warnings.extend(moving_modes(&models, states));
     }
-    let whole = channels.chosen(settings, system)?;
+    let whole = channels.chosen(settings, scene)?;
     let without_rigid = settings.without_rigid.then(|| whole.without(&(0..state.rigid).collect::<Vec<_>>()));
     state.warnings.extend(unseen(&whole, without_rigid.as_ref().unwrap_or(&whole)));
     Ok(LinearModel { equations: without_rigid.unwrap_or(whole), state })
@@ -114,14 +114,14 @@ pub fn linear_model(
 /// # Errors
 /// [`Failure`].
 pub fn linear_space(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     settings: &LinearSettings,
     reduction: Option<Reduction>,
     progress: impl FnMut(BuildProgress),
 ) -> Result<LinearSpace, Failure> {
-    let LinearModel { equations, mut state } = linear_model(system, builder, settings, progress)?;
-    let failed = |source: LinearError| source.in_file(&system.path);
+    let LinearModel { equations, mut state } = linear_model(scene, builder, settings, progress)?;
+    let failed = |source: LinearError| source.in_file(&scene.path);
     let whole = equations.state_space().map_err(failed)?;
     let rigid = if settings.without_rigid { 0 } else { state.rigid };
     state.warnings.extend(growing(&equations, rigid).map_err(failed)?);
@@ -134,7 +134,7 @@ pub fn linear_space(
 /// # Errors
 /// [`Failure`].
 pub fn linearize(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     settings: &LinearSettings,
     reduction: Option<Reduction>,
@@ -142,9 +142,9 @@ pub fn linearize(
     progress: impl FnMut(BuildProgress),
 ) -> Result<Report, Failure> {
     files::check_ending(output)?;
-    let space = linear_space(system, builder, settings, reduction, progress)?;
-    let failed = |source: LinearError| source.in_file(&system.path);
+    let space = linear_space(scene, builder, settings, reduction, progress)?;
+    let failed = |source: LinearError| source.in_file(&scene.path);
     let poles = space.model().poles().map_err(failed)?;
     files::write(space.model(), output)?;
-    Ok(report::report(system, &space, &poles, output))
+    Ok(report::report(scene, &space, &poles, output))
 }

@@ -8,7 +8,7 @@ use diagnostic::{Diagnostic, Failure};
 use linear::{LinearError, Quadrature};
 use model::{BuildProgress, Builder};
 use report::{Chart, Curve, Curves, File, Form, Report, Table};
-use scene::System;
+use scene::Scene;
 
 use crate::commands::linear::frf::{damping_of, resonances, structural};
 use crate::commands::linear::linearize::{LinearModel, LinearSettings, linear_model};
@@ -37,7 +37,7 @@ pub struct PsdSettings {
 /// # Errors
 /// [`Failure`].
 pub fn psd(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     table: &Path,
     settings: &PsdSettings,
@@ -46,11 +46,11 @@ pub fn psd(
     let spectra = Spectra::read(table)?;
     let band = spectra.band(settings.band)?;
     let asked = LinearSettings { inputs: spectra.inputs(), ..settings.linear.clone() };
-    let mut model = linear_model(system, builder, &asked, progress)?;
+    let mut model = linear_model(scene, builder, &asked, progress)?;
     if let Some(loss_factor) = settings.loss_factor {
         model.state.damping = structural(loss_factor);
     }
-    let failed = |source: LinearError| source.in_file(&system.path);
+    let failed = |source: LinearError| source.in_file(&scene.path);
     let damping = damping_of(settings.loss_factor);
     let poles = model.equations.poles(damping).map_err(failed)?;
     let rule = Quadrature::of_poles(band, &spectra.frequencies(), &poles).map_err(failed)?;
@@ -58,20 +58,20 @@ pub fn psd(
     let input = spectra.at(&names, &rule.frequencies)?;
     let response = model.equations.frequency_response(&rule.frequencies, damping).map_err(failed)?;
     let responses = Responses::new(&model.equations, &response, &input, &rule.weights).map_err(failed)?;
-    Ok(report_of(system, &model, band, (&responses, &rule.weights), resonances(&poles)))
+    Ok(report_of(scene, &model, band, (&responses, &rule.weights), resonances(&poles)))
 }
 
 fn report_of(
-    system: &System,
+    scene: &Scene,
     model: &LinearModel,
     [low, high]: [f64; 2],
     (responses, weights): (&Responses, &[f64]),
     resonances: Vec<f64>,
 ) -> Report {
-    let unit = frequency_unit(&system.units.time);
+    let unit = frequency_unit(&scene.units.time);
     let inputs: Vec<&str> = model.equations.inputs.iter().map(|input| &input.name[..]).collect();
     let count = responses.frequencies.len();
-    let mut report = Report::new(&system.title);
+    let mut report = Report::new(&scene.title);
     report.put("frequency_unit", &unit);
     report.say("about", "about", model.state.to_string());
     report.line("inputs", inputs.join(", "));

@@ -8,7 +8,7 @@ use std::path::Path;
 use diagnostic::{Diagnostic, Failure, Kind};
 use model::{BuildProgress, Builder};
 use report::{Form, Report, Table, Value};
-use scene::{Interpolation, System};
+use scene::{Interpolation, Scene};
 use shock::{Following, ShockError};
 
 use crate::commands::linear::linearize::{LinearSettings, linear_model};
@@ -26,21 +26,21 @@ const COUPLED: f64 = 0.02;
 /// # Errors
 /// [`Failure`].
 pub fn shock(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     (table, interpolation): (&Path, Interpolation),
     settings: &LinearSettings,
     progress: impl FnMut(BuildProgress),
 ) -> Result<Report, Failure> {
     let motion = table::read(table, interpolation)?;
-    let model = linear_model(system, builder, settings, progress)?;
+    let model = linear_model(scene, builder, settings, progress)?;
     let inputs: Vec<String> = model.equations.inputs.iter().map(|input| input.name.clone()).collect();
     let [input] = &inputs[..] else {
-        let wrong = Kind::Usage.of(&system.path).found(format!("the inputs {}", inputs.join(", ")));
+        let wrong = Kind::Usage.of(&scene.path).found(format!("the inputs {}", inputs.join(", ")));
         let help = "name it whole, such as --input base.acceleration.z";
         return Err(wrong.expected("one, which follows the table").help(help).into());
     };
-    let modes = model.equations.real_modes().map_err(|source| source.in_file(&system.path))?;
+    let modes = model.equations.real_modes().map_err(|source| source.in_file(&scene.path))?;
     // The model gives frequencies and damping: no argument of the command is at fault.
     let failed = |source: ShockError| Kind::Input.of(table).says(source.to_string());
     let peaks = ModePeaks::new(&model.equations, &modes, &motion).map_err(failed)?;
@@ -55,7 +55,7 @@ pub fn shock(
     if outputs.is_empty() {
         let help = "ask for displacements, accelerations, coordinates of joints or stresses, or for reactions of joints where nothing is damped";
         let none = "velocities and rates alone, of which a shock has no sums";
-        return Err(Kind::Usage.of(&system.path).found(none).expected("an output with a sum").help(help).into());
+        return Err(Kind::Usage.of(&scene.path).found(none).expected("an output with a sum").help(help).into());
     }
     let mixed = peaks::mixed(&model.equations);
     if !mixed.is_empty() {
@@ -66,9 +66,9 @@ pub fn shock(
         ));
     }
 
-    let unit = frequency_unit(&system.units.time);
+    let unit = frequency_unit(&scene.units.time);
     let [duration, peak] = [motion.duration(), motion.peak()];
-    let mut report = Report::new(&system.title);
+    let mut report = Report::new(&scene.title);
     let between = interpolation.words();
     report.line("shock", format!("{input} for {duration:.6}, at most {peak:.6e}, {between} between rows of the table"));
     report.put("frequency_unit", &unit);

@@ -7,7 +7,7 @@ use fem_tet10::Location;
 use model::{BuildError, BuildProgress, Builder, Meshed, Model, Needs};
 use rayon::prelude::*;
 use report::{Form, Report, Table};
-use scene::{Body, FileBody, MeshedBody, Scene};
+use scene::{Body, BodySource, FileBody, MeshedBody};
 
 use super::scenes::require_flexible;
 use crate::files::given_file::GivenFile;
@@ -20,10 +20,10 @@ const APART: f64 = 0.02;
 const SAME: f64 = 0.9;
 
 /// The scene of the other body: a scene file's, or this scene with another mesh or body file.
-fn scene_of(scene: &Scene, other: &Path) -> Result<Scene, BuildError> {
-    let body = match (GivenFile::of(other), &scene.body) {
-        (Some(GivenFile::Scene), _) => return Ok(Scene::read(other)?),
-        (Some(GivenFile::Body), _) => Body::File(FileBody {
+fn scene_of(given: &Body, other: &Path) -> Result<Body, BuildError> {
+    let body = match (GivenFile::of(other), &given.source) {
+        (Some(GivenFile::Scene), _) => return Ok(Body::read(other)?),
+        (Some(GivenFile::Body), _) => BodySource::File(FileBody {
             file: other.to_owned(),
             mesh: None,
             mesh_size: None,
@@ -31,15 +31,15 @@ fn scene_of(scene: &Scene, other: &Path) -> Result<Scene, BuildError> {
             materials: None,
             point_masses: None,
         }),
-        (_, Body::Meshed(body)) => Body::Meshed(MeshedBody { mesh: other.to_owned(), ..body.clone() }),
+        (_, BodySource::Meshed(body)) => BodySource::Meshed(MeshedBody { mesh: other.to_owned(), ..body.clone() }),
         _ => {
             let found = format!("{}, a mesh for a body that has none to replace", other.display());
-            return Err(scene
+            return Err(given
                 .refuse("body", found, "a scene or a body file", "give --mac a scene or a body file")
                 .into());
         }
     };
-    Ok(Scene { body, ..scene.clone() })
+    Ok(Body { source: body, ..given.clone() })
 }
 
 /// Compares the modes of a body with those of another one: of a scene file, or of this scene with another mesh or body file. The other
@@ -49,15 +49,15 @@ fn scene_of(scene: &Scene, other: &Path) -> Result<Scene, BuildError> {
 /// # Errors
 /// [`BuildError`] of the other body, of bodies that lie apart, and of those without flexible modes.
 pub fn mac(
-    scene: &Scene,
+    body: &Body,
     model: &Model,
     other: &Path,
     builder: &Builder,
     report: &mut Report,
     progress: impl FnMut(BuildProgress),
 ) -> Result<(), BuildError> {
-    let own = require_flexible(scene, model)?;
-    let with = scene_of(scene, other)?;
+    let own = require_flexible(body, model)?;
+    let with = scene_of(body, other)?;
     let other_model = builder.needing(Needs::modes()).build(&with, progress)?;
     let others = require_flexible(&with, &other_model)?;
     let (own_shapes, other_shapes, distance) = at_places(own, others);
@@ -65,7 +65,7 @@ pub fn mac(
     if relative > APART {
         let found = format!("{}, whose body is {distance:.4} away from a node of this one", other.display());
         let expected = "a body that lies where this one does";
-        return Err(scene.refuse("body", found, expected, "compare bodies in the same place and units").into());
+        return Err(body.refuse("body", found, expected, "compare bodies in the same place and units").into());
     }
     let norms = |shapes: &Mat<f64>| Col::from_iter(shapes.col_iter().map(|shape| shape.squared_norm_l2()));
     let (of_own, of_other) = (norms(&own_shapes), norms(&other_shapes));

@@ -8,7 +8,7 @@ use dynamics::SharedLoad;
 use figures::{ChartGrid, FigureError, LineChart, Reference, Scale, Series, Stroke};
 use model::Model;
 use results::Results;
-use scene::Scene;
+use scene::Body;
 
 use super::rigid_plate::{RigidHistories, WATCHED_POINT, dead_force};
 use crate::commands::pictures::mode_shapes;
@@ -31,13 +31,13 @@ pub(super) const NAMES: [&str; 11] = [
 
 /// Draws all figures into `folder` and returns their files.
 pub(super) fn draw(
-    scene: &Scene,
+    given: &Body,
     model: &Model,
     results: &Results,
     rigid: &RigidHistories,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, Failure> {
-    let units = &scene.units;
+    let units = &given.units;
     let (length, time) = (&units.length, &units.time);
     let x_label = format!("time, {time}");
     let acceleration = format!("{length}/{time}²");
@@ -59,7 +59,7 @@ pub(super) fn draw(
         vec![solid(label, history(rows, axis)), dashed("rigid plate", history(theirs, axis))]
     };
 
-    let mut files = mode_shapes::draw(scene, model, &folder.join("fig03_mode_shapes"))?.to_vec();
+    let mut files = mode_shapes::draw(given, model, &folder.join("fig03_mode_shapes"))?.to_vec();
     let reference = |name: &str, rows: &[[f64; 3]], axis: usize| {
         Some(Reference { name: name.to_owned(), value: rows.iter().map(|row| row[axis].abs()).fold(0.0, f64::max) })
     };

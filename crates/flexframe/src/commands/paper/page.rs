@@ -2,29 +2,29 @@
 
 use std::fmt::Write;
 
-use scene::{History, LoadKind, LoadPlace, Scene};
+use scene::{Body, History, LoadKind, LoadPlace};
 
 use super::comparison::{Comparison, Histories, Pair};
 use crate::commands::run::RunReport;
 use crate::rows::units::UnitLabels;
 
 /// The page as Markdown.
-pub(super) fn page(scene: &Scene, run: &RunReport, comparison: &Comparison) -> String {
+pub(super) fn page(body: &Body, run: &RunReport, comparison: &Comparison) -> String {
     let mut page = String::new();
     // Writing to a String cannot fail.
-    let _ = write_page(&mut page, scene, run, comparison);
+    let _ = write_page(&mut page, body, run, comparison);
     page
 }
 
-fn write_page(out: &mut String, scene: &Scene, run: &RunReport, c: &Comparison) -> std::fmt::Result {
+fn write_page(out: &mut String, body: &Body, run: &RunReport, c: &Comparison) -> std::fmt::Result {
     let [length, mass, time] = &run.units;
-    writeln!(out, "# {}: beside the paper\n", scene.title)?;
+    writeln!(out, "# {}: beside the paper\n", body.title)?;
     writeln!(
         out,
         "X. Liu, *A Novel Approach for Flexible Body Dynamics Computation via Synthesizing Incremental Motions in \
          Reconfigured Inertial Frames* (Sandia). Made by flexframe {} from `{}`; `./dev plate` makes it again.\n",
         env!("CARGO_PKG_VERSION"),
-        scene.path.file_name().unwrap_or_default().display()
+        body.path.file_name().unwrap_or_default().display()
     )?;
     writeln!(out, "```text\n{run}\n```\n")?;
 
@@ -37,11 +37,11 @@ fn write_page(out: &mut String, scene: &Scene, run: &RunReport, c: &Comparison) 
          one node, and the compliance under it grows without limit as the mesh is refined: modes 8, 14 and 16 follow \
          the mesh, the others hardly do."
     )?;
-    writeln!(out, "* **The history of its force** (Fig. 4 is only a picture). {}", force_in_words(scene))?;
+    writeln!(out, "* **The history of its force** (Fig. 4 is only a picture). {}", force_in_words(body))?;
     writeln!(
         out,
         "* **The length of its run.** Here {} {time}: {}.",
-        scene.time.end,
+        body.time.end,
         run.bodies.first().map_or_else(String::new, |plate| plate.steps_in_words(run))
     )?;
     writeln!(
@@ -136,17 +136,17 @@ fn apart(histories: &Histories, unit: &str) -> String {
     format!("apart by {:.1e} of the peak {:.5} {unit}", histories.difference, histories.peak)
 }
 
-fn force_in_words(scene: &Scene) -> String {
-    let sentences = scene.loads.iter().filter_map(|load| {
+fn force_in_words(body: &Body) -> String {
+    let sentences = body.loads.iter().filter_map(|load| {
         let (LoadKind::Force, LoadPlace::Point(at)) = (load.kind, &load.place) else { return None };
         let History::HalfSine { start, duration } = load.history else { return None };
         Some(format!(
             "Here: a half-sine pulse of {} {} along {:.4?} at {:?}, from {start} for {duration} {}.",
             load.amplitude,
-            UnitLabels::from(&scene.units).force(),
+            UnitLabels::from(&body.units).force(),
             load.direction,
             at,
-            scene.units.time
+            body.units.time
         ))
     });
     sentences.collect::<Vec<_>>().join(" ")

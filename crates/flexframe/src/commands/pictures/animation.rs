@@ -14,7 +14,7 @@ use model::{BuildError, Builder};
 use nalgebra::Vector3;
 use results::{BodyResults, Shapes, Units};
 use rigid_kin::Attitude;
-use scene::{Rows, Shared, System, Time};
+use scene::{Rows, Scene, Shared, Time};
 use whole_file::TemporaryFolder;
 
 use self::film::Format;
@@ -34,43 +34,43 @@ use crate::surface::Surface;
 /// # Errors
 /// [`Failure`].
 pub fn animate(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     path: &Path,
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<Option<String>, Failure> {
     let format = Format::of(path)?;
-    let scenes = &system.bodies[..];
-    let surface_of = |scene| require_surface(scene).map_err(|error| RunError::from(BuildError::from(error)));
+    let scenes = &scene.bodies[..];
+    let surface_of = |body| require_surface(body).map_err(|error| RunError::from(BuildError::from(error)));
     scenes.iter().try_for_each(surface_of)?;
-    let [from, to] = settings.times(system.time.end)?;
-    if system.has_ties() {
-        return animate_tied(system, builder, path, settings, progress);
+    let [from, to] = settings.times(scene.time.end)?;
+    if scene.has_ties() {
+        return animate_tied(scene, builder, path, settings, progress);
     }
     let mut bodies = Vec::new();
     let mut simulations = Vec::new();
-    for scene in scenes {
-        let model = builder.build(scene, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
+    for body in scenes {
+        let model = builder.build(body, |p| progress(RunProgress::Build(p))).map_err(RunError::from)?;
         let surface = match settings.coloured {
             Coloured::Displacement => Surface::of_model(&model),
             Coloured::Stress => Surface::with_stress(&model)?,
         };
         let mut simulation = model
-            .start(scene)
-            .map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
+            .start(body)
+            .map_err(|source| RunError::Setup { scene: body.path.clone(), source: Box::new(source) })?;
         simulation.keep_last_step();
         simulations.push(simulation);
-        bodies.push(PictureBody::new(model.body.origin, surface, settings.coloured, &scene.path)?);
+        bodies.push(PictureBody::new(model.body.origin, surface, settings.coloured, &body.path)?);
     }
     let last = settings.frames.clamp(2, MAX_FRAMES) - 1;
-    let units = run::units(system);
-    let mut picture = Picture::new(&system.title, &units, bodies, settings, (to - from) / last as f64);
+    let units = run::units(scene);
+    let mut picture = Picture::new(&scene.title, &units, bodies, settings, (to - from) / last as f64);
     for frame in 0..=last {
         let part = frame as f64 / last as f64;
         let due = from * (1.0 - part) + to * part;
         let now = simulations.iter_mut().map(|simulation| observed_at(simulation, due)).collect::<Result<Vec<_>, _>>();
-        let now = now.map_err(|source| source.in_file(&system.path))?;
+        let now = now.map_err(|source| source.in_file(&scene.path))?;
         let state =
             |now: &Observation| (now.origin_global, now.attitude, now.modal_displacement.clone(), now.omega_body);
         picture.add(due, &now.iter().map(state).collect::<Vec<_>>());
@@ -81,20 +81,20 @@ pub fn animate(
 
 /// Draws bodies that are tied together, from the results of a run whose rows are the frames.
 fn animate_tied(
-    system: &System,
+    scene: &Scene,
     builder: &Builder,
     path: &Path,
     settings: AnimationSettings,
     mut progress: impl FnMut(RunProgress),
 ) -> Result<Option<String>, Failure> {
-    let [from, to] = settings.times(system.time.end)?;
+    let [from, to] = settings.times(scene.time.end)?;
     let rows = Rows::Interval((to - from) / (settings.frames.clamp(2, MAX_FRAMES) - 1) as f64);
     let until = |shared: Shared| Shared { time: Time { end: to, ..shared.time }, rows, ..shared };
-    let system = system.clone().with_shared(until);
+    let scene = scene.clone().with_shared(until);
     let temporary = TemporaryFolder::new();
     let temporary = temporary.map_err(|source| RunError::Folder { folder: std::env::temp_dir(), source })?;
     let run_settings = RunSettings { large: true, builder: builder.clone(), ..RunSettings::default() };
-    let (_, report) = run::run(&system, temporary.path(), &run_settings, &mut progress)?;
+    let (_, report) = run::run(&scene, temporary.path(), &run_settings, &mut progress)?;
     animate_results(&report.results, path, settings, progress)
 }
 

@@ -6,7 +6,7 @@ use diagnostic::Failure;
 use figures::{Panel, ShapeGrid, View};
 use model::{Meshed, Model};
 use nalgebra::Vector3;
-use scene::Scene;
+use scene::Body;
 
 use crate::commands::modes::{frequency_unit, require_flexible, require_surface};
 use crate::surface::Surface;
@@ -20,7 +20,7 @@ const MAX_PANELS: usize = 20;
 ///
 /// # Errors
 /// [`Failure`], also where there are no flexible modes to draw.
-pub fn draw(scene: &Scene, model: &Model, stem: &Path) -> Result<[PathBuf; 3], Failure> {
+pub fn draw(scene: &Body, model: &Model, stem: &Path) -> Result<[PathBuf; 3], Failure> {
     require_surface(scene)?;
     let meshed = require_flexible(scene, model)?;
     let Meshed { mesh, modes, .. } = meshed;

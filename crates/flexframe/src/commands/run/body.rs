@@ -5,7 +5,7 @@ use model::Model;
 use nalgebra::Vector3;
 use results::BodyResults;
 use rigid_kin::Attitude;
-use scene::Scene;
+use scene::Body;
 
 use super::balances::{Conserved, Monitor};
 use super::body_report::BodyRunReport;
@@ -16,25 +16,25 @@ use crate::rows::effects;
 use crate::rows::peak_stress::Largest;
 use crate::rows::row::BodyRow;
 
-/// A body that is to run: its scene and its model.
+/// A body that is to run, and its model.
 #[derive(Debug, Clone, Copy)]
 pub struct RunBody<'a> {
-    /// Its scene.
-    pub scene: &'a Scene,
-    /// Its model, built of this scene.
+    /// The body of the scene.
+    pub body: &'a Body,
+    /// Its model.
     pub model: &'a Model,
 }
 
 impl RunBody<'_> {
     /// Name of the body, which is `body` where the scene gives none.
     pub fn name(&self) -> &str {
-        name(self.scene)
+        name(self.body)
     }
 }
 
-/// Name of the body of a scene.
-pub(super) fn name(scene: &Scene) -> &str {
-    scene.name.as_deref().unwrap_or("body")
+/// Name of a body.
+pub(super) fn name(body: &Body) -> &str {
+    body.name.as_deref().unwrap_or("body")
 }
 
 /// A body on its way.
@@ -52,13 +52,13 @@ pub(super) struct FollowedBody<'a> {
 
 impl<'a> FollowedBody<'a> {
     pub fn new(of: RunBody<'a>, number: usize, initial: &'a Initial) -> Result<Self, RunError> {
-        let RunBody { scene, model } = of;
+        let RunBody { body, model } = of;
         let (origin, center) = (model.body.origin, model.body.center_of_mass);
         let first_center = initial.origin.unwrap_or(origin) + initial.attitude.to_global(&(center - origin));
         Ok(Self {
             of,
             number,
-            watch: Watch::new(scene, model, initial, model.physics.effects)?,
+            watch: Watch::new(body, model, initial, model.physics.effects)?,
             peak_strain_energy: 0.0,
             peak_stress: None,
             first_attitude: initial.attitude,
@@ -119,7 +119,7 @@ impl<'a> FollowedBody<'a> {
     ) -> (BodyRunReport, Vec<String>) {
         let Watched { balances, right_unsummed, energy_tells, step_error, turned, warnings } =
             self.watch.finish(energies, stats.longest);
-        let RunBody { scene, model } = self.of;
+        let RunBody { body, model } = self.of;
         let report = BodyRunReport {
             name: self.of.name().to_owned(),
             scheme: scheme.to_owned(),
@@ -140,7 +140,7 @@ impl<'a> FollowedBody<'a> {
             energy_tells,
             step_error: stats.error.map_or(step_error, |stated| Some(stated.sum)),
             forgotten_vibration: stats.error.map_or(0.0, |stated| stated.forgotten),
-            effects: effects::computed(scene, model),
+            effects: effects::computed(body, model),
             large_modes: model.large_modes().iter().map(|k| k + 1).collect(),
             static_answer: model.static_answer().map(|k| k + 1),
         };

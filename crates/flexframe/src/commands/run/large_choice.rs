@@ -9,7 +9,7 @@ use diagnostic::Failure;
 use dynamics::{Effect, EffectMap};
 use model::{Builder, Model, Needs};
 use results::Results;
-use scene::{Choice, Scene, System, assign, key_path};
+use scene::{Body, Choice, Scene, assign, key_path};
 use serde::Serialize;
 use toml::Value;
 
@@ -52,7 +52,7 @@ impl LargeChoice {
     pub(super) fn better(
         file: &Path,
         results: &Results,
-        (system, models): (&System, &[Model]),
+        (system, models): (&Scene, &[Model]),
         builder: &Builder,
         check: &CheckReport,
     ) -> Result<Option<Self>, Failure> {
@@ -95,15 +95,15 @@ impl LargeChoice {
     }
 
     /// Words on bodies of a run of several whose model the check found wrong by more than a per cent: other large modes were not tried.
-    pub(super) fn not_tried((system, models): (&System, &[Model]), check: &CheckReport) -> Option<String> {
+    pub(super) fn not_tried((system, models): (&Scene, &[Model]), check: &CheckReport) -> Option<String> {
         if system.bodies.len() < 2 {
             return None;
         }
         let bodies = system.bodies.iter().zip(models).zip(&check.bodies);
-        let wrong = bodies.filter(|((scene, model), body)| {
-            may_be_large(scene, model) && model.body.flexible() > 0 && model_error(&body.rows) >= WORTH
+        let wrong = bodies.filter(|((given, model), body)| {
+            may_be_large(given, model) && model.body.flexible() > 0 && model_error(&body.rows) >= WORTH
         });
-        let names: Vec<&str> = wrong.filter_map(|((scene, _), _)| scene.name.as_deref()).collect();
+        let names: Vec<&str> = wrong.filter_map(|((given, _), _)| given.name.as_deref()).collect();
         (!names.is_empty()).then(|| {
             format!(
                 "other large modes were not tried for {}: the check tries them for a body alone; name some in `large` of its \
@@ -114,7 +114,7 @@ impl LargeChoice {
     }
 
     /// The system with this choice, if the scene leaves it open and the run may be made again.
-    pub(super) fn taken(&self, system: &System, steps: u64) -> Option<System> {
+    pub(super) fn taken(&self, system: &Scene, steps: u64) -> Option<Scene> {
         let [scene] = &system.bodies[..] else { return None };
         if scene.modes.large.is_some() || steps > LONG {
             return None;
@@ -131,7 +131,7 @@ impl LargeChoice {
             ("modes.following", number(self.following)),
         ];
         let text = assign(&system.text, &values.map(|(of, value)| (key(of), value))).ok()?;
-        System::parse(&text, &system.path).ok()
+        Scene::parse(&text, &system.path).ok()
     }
 
     /// The keys of the choice, with their values.
@@ -160,14 +160,14 @@ impl LargeChoice {
 }
 
 /// True if large modes may be among those of a body.
-fn may_be_large(scene: &Scene, model: &Model) -> bool {
-    scene.method().abilities.large_deflection
-        && scene.effects.choices[Effect::LargeDeflection] != Choice::Off
+fn may_be_large(body: &Body, model: &Model) -> bool {
+    body.method().abilities.large_deflection
+        && body.effects.choices[Effect::LargeDeflection] != Choice::Off
         && model.static_answer().is_none()
 }
 
 /// Choices that differ from that of a model: large modes numbered from 1, and the most that follow them.
-fn candidates(scene: &Scene, model: &Model, swings: &[f64]) -> Vec<(Vec<usize>, usize)> {
+fn candidates(body: &Body, model: &Model, swings: &[f64]) -> Vec<(Vec<usize>, usize)> {
     let now: Vec<usize> = model.large_modes().iter().map(|k| k + 1).collect();
     let mut order: Vec<usize> = (0..swings.len().min(model.body.natural_modes)).filter(|k| swings[*k] > 0.0).collect();
     order.sort_by(|a, b| swings[*b].total_cmp(&swings[*a]));
@@ -176,12 +176,12 @@ fn candidates(scene: &Scene, model: &Model, swings: &[f64]) -> Vec<(Vec<usize>, 
         large.sort_unstable();
         large
     };
-    let following = scene.modes.following;
+    let following = body.modes.following;
     let mut choices = Vec::new();
     for large in (1..=LARGE).map(furthest).chain([now.clone()]) {
         for following in [following, following.min(FOLLOWING)] {
             let choice = (large.clone(), following);
-            if !large.is_empty() && choice != (now.clone(), scene.modes.following) && !choices.contains(&choice) {
+            if !large.is_empty() && choice != (now.clone(), body.modes.following) && !choices.contains(&choice) {
                 choices.push(choice);
             }
         }
@@ -204,8 +204,8 @@ mod tests {
                  material = {{ young_modulus = 7e10, poisson_ratio = 0.3, density = 2700.0 }}\n[{modes}]\nflexible = 4\n\
                  [time]\nend = 1.0\ntolerance = 1e-4\n"
             );
-            let system = System::parse(&text, "wing.toml").unwrap();
-            let taken = choice.taken(&system, 1000).unwrap();
+            let scene = Scene::parse(&text, "wing.toml").unwrap();
+            let taken = choice.taken(&scene, 1000).unwrap();
             let modes = &taken.bodies[0].modes;
             assert_eq!((&modes.large, modes.following), (&Some(Large::List(vec![1, 3])), 2), "{body}");
             assert_eq!(taken.bodies[0].effects.choices[Effect::LargeDeflection], Choice::On);

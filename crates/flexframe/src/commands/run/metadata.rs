@@ -3,7 +3,7 @@
 use dynamics::{Coordinate, DrivenMotion};
 use model::Builder;
 use results::{BodyMetadata, BodyProperties, JointMetadata, Metadata, Units};
-use scene::{End, Shared, StepControl, System};
+use scene::{End, Scene, Shared, StepControl};
 
 use super::body::RunBody;
 use crate::drawn::mesh_properties;
@@ -13,20 +13,20 @@ use crate::rows::columns::part;
 use crate::rows::effects;
 
 /// The metadata in the results file of a run.
-pub(super) fn metadata_of_file(system: &System, bodies: &[RunBody<'_>], builder: &Builder) -> Metadata {
-    let mut metadata = metadata_of_system(system, bodies);
-    for (RunBody { scene, model }, body) in bodies.iter().zip(&mut metadata.bodies) {
-        body.model.mesh = mesh_properties(scene, model);
+pub(super) fn metadata_of_file(scene: &Scene, bodies: &[RunBody<'_>], builder: &Builder) -> Metadata {
+    let mut metadata = metadata_of_scene(scene, bodies);
+    for (RunBody { body, model }, of_body) in bodies.iter().zip(&mut metadata.bodies) {
+        of_body.model.mesh = mesh_properties(body, model);
     }
-    let input_files = builder.files(system).iter().map(|file| scene_file::to_text(file)).collect();
+    let input_files = builder.files(scene).iter().map(|file| scene_file::to_text(file)).collect();
     Metadata { input_files, ..metadata }
 }
 
 /// As [`metadata`], with the joints, springs and bushings.
-pub fn metadata_of_system(system: &System, bodies: &[RunBody<'_>]) -> Metadata {
-    let joints = (0..system.joints.len()).map(|joint| joint_metadata(system, joint));
-    let joints = joints.chain(element_metadata(system)).collect();
-    Metadata { joints, ..metadata(system, bodies) }
+pub fn metadata_of_scene(scene: &Scene, bodies: &[RunBody<'_>]) -> Metadata {
+    let joints = (0..scene.joints.len()).map(|joint| joint_metadata(scene, joint));
+    let joints = joints.chain(element_metadata(scene)).collect();
+    Metadata { joints, ..metadata(scene, bodies) }
 }
 
 /// The metadata of a run without what only a file has: the files that it read, and the sizes of meshes.
@@ -56,28 +56,28 @@ pub fn metadata(scene: &Shared, bodies: &[RunBody<'_>]) -> Metadata {
 
 /// The scheme, or the two of bodies that are tied and bodies that are not.
 fn scheme(bodies: &[RunBody<'_>]) -> String {
-    let mut schemes: Vec<&str> = bodies.iter().map(|of| of.scene.method().scheme).collect();
+    let mut schemes: Vec<&str> = bodies.iter().map(|of| of.body.method().scheme).collect();
     schemes.sort_unstable();
     schemes.dedup();
     schemes.join(", ")
 }
 
 fn body_metadata(of: &RunBody<'_>) -> BodyMetadata {
-    let RunBody { scene, model } = *of;
-    let body = BodyReport::new(model);
+    let RunBody { body, model } = *of;
+    let report = BodyReport::new(model);
     BodyMetadata {
         name: of.name().to_owned(),
         model: BodyProperties {
-            mass: body.mass,
-            center_of_mass: body.center_of_mass,
-            inertia: body.inertia,
+            mass: report.mass,
+            center_of_mass: report.center_of_mass,
+            inertia: report.inertia,
             origin: model.body.origin.into(),
             static_shapes: model.static_shapes(),
             kinds: model
                 .static_answer()
-                .map_or_else(Vec::new, |_| body.kinds.iter().map(|kind| (*kind).to_owned()).collect()),
-            frequencies: body.natural_frequencies,
-            damping_ratios: body.damping_ratios,
+                .map_or_else(Vec::new, |_| report.kinds.iter().map(|kind| (*kind).to_owned()).collect()),
+            frequencies: report.natural_frequencies,
+            damping_ratios: report.damping_ratios,
             rotation_axes: model.body.motion.rotations().iter().map(|axis| (*axis).into()).collect(),
             translation_axes: model.body.motion.translations().iter().map(|axis| (*axis).into()).collect(),
             mesh: None,
@@ -90,17 +90,17 @@ fn body_metadata(of: &RunBody<'_>) -> BodyMetadata {
             .collect(),
         parts: parts(of).map(str::to_owned).collect(),
         support_names: model.supports.as_ref().map_or(Vec::new(), |supports| supports.names().to_vec()),
-        effects: effects::described(scene, model),
+        effects: effects::described(body, model),
         refusal: model.refusal.map(|refusal| refusal.to_string()),
     }
 }
 
-fn joint_metadata(system: &System, number: usize) -> JointMetadata {
-    let joint = &system.joints[number];
+fn joint_metadata(scene: &Scene, number: usize) -> JointMetadata {
+    let joint = &scene.joints[number];
     let coordinates = joint.kind.coordinates();
     let acts = |along| {
         let of_spring = joint.spring.iter().map(|spring| spring.along);
-        let is_coupled = system.couplings.iter().any(|coupling| coupling.kind.acts_on(number, along));
+        let is_coupled = scene.couplings.iter().any(|coupling| coupling.kind.acts_on(number, along));
         is_coupled || of_spring.chain(joint.motor.iter().map(|motor| motor.along)).any(|coordinate| coordinate == along)
     };
     let parts = [
@@ -114,23 +114,23 @@ fn joint_metadata(system: &System, number: usize) -> JointMetadata {
     JointMetadata {
         name: joint.name.clone(),
         kind: joint.kind.name().to_owned(),
-        between: joint.between.map(|end| system.name_of(end)),
+        between: joint.between.map(|end| scene.name_of(end)),
         parts: parts.into_iter().filter(|(_, has)| *has).map(|(part, _)| part.to_owned()).collect(),
     }
 }
 
 /// Springs, then bushings.
-fn element_metadata(system: &System) -> impl Iterator<Item = JointMetadata> {
+fn element_metadata(scene: &Scene) -> impl Iterator<Item = JointMetadata> {
     let of = |name: &String, kind: &str, between: [End; 2], parts: &[&str]| JointMetadata {
         name: name.clone(),
         kind: kind.to_owned(),
-        between: between.map(|end| system.name_of(end)),
+        between: between.map(|end| scene.name_of(end)),
         parts: parts.iter().map(|part| (*part).to_owned()).collect(),
     };
     let of_spring = [part::LINE, part::SPRING];
-    let springs = system.springs.iter().map(move |spring| of(&spring.name, "spring", spring.between, &of_spring));
+    let springs = scene.springs.iter().map(move |spring| of(&spring.name, "spring", spring.between, &of_spring));
     let of_bushing = [part::SPRING];
-    springs.chain(system.bushings.iter().map(move |of_| of(&of_.name, "bushing", of_.between, &of_bushing)))
+    springs.chain(scene.bushings.iter().map(move |of_| of(&of_.name, "bushing", of_.between, &of_bushing)))
 }
 
 /// The labels of a scene's units.
@@ -140,12 +140,12 @@ pub(crate) fn units(scene: &Shared) -> Units {
 }
 
 /// Parts of a body that has further columns. In the formulation of the paper there are no reactions.
-fn parts<'a>(RunBody { scene, model }: &RunBody<'a>) -> impl Iterator<Item = &'static str> + use<'a> {
+fn parts<'a>(RunBody { body, model }: &RunBody<'a>) -> impl Iterator<Item = &'static str> + use<'a> {
     let motion = &model.body.motion;
     let drive = model.physics.drive.as_ref().map(|drive| drive.motion);
     let turns = matches!(drive, Some(DrivenMotion::Turn { .. }));
     let slides = matches!(drive, Some(DrivenMotion::Slide { .. }));
-    let is_held = !motion.is_free() && scene.method().abilities.reactions;
+    let is_held = !motion.is_free() && body.method().abilities.reactions;
     [
         (part::CONSTRAINT, true),
         (part::HINGE, turns || motion.rotations().len() == 1),

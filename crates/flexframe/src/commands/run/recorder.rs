@@ -203,7 +203,7 @@ impl<'a> Recorder<'a> {
     /// The report of an island of tied bodies.
     fn tied_report(&self, island: &Island) -> Option<TiedReport> {
         let bodies = island.bodies.iter().map(|body| &self.bodies[*body].of);
-        let constrained = bodies.clone().filter(|of| of.scene.constraint.is_some());
+        let constrained = bodies.clone().filter(|of| of.body.constraint.is_some());
         let [names, constrained] =
             [bodies.map(|of| of.name().to_owned()).collect(), constrained.map(|of| of.name().to_owned()).collect()];
         TiedReport::new(&island.motion, names, constrained)
@@ -271,7 +271,7 @@ fn reports(run: &Run, mut bodies: Vec<FollowedBody<'_>>, last: &Row) -> Vec<Fini
     let report = |body: FollowedBody<'_>| {
         let (of, number) = (body.of, body.number);
         let (island, own) = run.island_of(number)?;
-        let scheme = of.scene.method().scheme;
+        let scheme = of.body.method().scheme;
         let (report, warnings) =
             body.report(&last.bodies[number], (&island.motion.stats(), &island.motion.energies(own), scheme));
         let named = |text| if count == 1 { text } else { format!("body {}: {text}", of.name()) };

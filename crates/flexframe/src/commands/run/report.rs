@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use scene::{Interpolation, System, TablePoints};
+use scene::{Interpolation, Scene, TablePoints};
 use serde::Serialize;
 
 use super::body_report::BodyRunReport;
@@ -80,13 +80,13 @@ pub struct TableInUse {
 
 impl TableInUse {
     /// The tables of a scene.
-    pub(super) fn all(system: &System) -> Vec<Self> {
+    pub(super) fn all(scene: &Scene) -> Vec<Self> {
         let of = |table: &TablePoints| Self {
             file: table.file.clone(),
             points: table.points.len(),
             interpolation: table.interpolation,
         };
-        system.tables().map(of).collect()
+        scene.tables().map(of).collect()
     }
 }
 

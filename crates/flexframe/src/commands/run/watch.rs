@@ -3,7 +3,7 @@
 use advice::{Refusal, Review, StepEstimate};
 use dynamics::{EffectMap, Initial, Moment, MotionState, Observation, RunEnergies};
 use model::{BuildError, Model};
-use scene::{Load, LoadKind, LoadPlace, Scene};
+use scene::{Body, Load, LoadKind, LoadPlace};
 
 use super::balances::{Balances, Conserved, Monitor};
 use super::error::RunError;
@@ -21,7 +21,7 @@ const RESOLVED: f64 = 0.5;
 
 /// Watches a motion. Every moment goes to [`Self::look`], every row to [`Self::observe`].
 pub struct Watch<'a> {
-    scene: &'a Scene,
+    scene: &'a Body,
     model: &'a Model,
     review: Review<'a>,
     monitor: Monitor,
@@ -53,18 +53,18 @@ impl<'a> Watch<'a> {
     /// # Errors
     /// [`RunError::Setup`].
     pub fn new(
-        scene: &'a Scene,
+        body: &'a Body,
         model: &'a Model,
         initial: &'a Initial,
         effects: EffectMap<bool>,
     ) -> Result<Self, RunError> {
         let step = model
-            .step_estimate(scene)
-            .map_err(|source| RunError::Setup { scene: scene.path.clone(), source: Box::new(source) })?;
+            .step_estimate(body)
+            .map_err(|source| RunError::Setup { scene: body.path.clone(), source: Box::new(source) })?;
         Ok(Self {
-            scene,
+            scene: body,
             model,
-            review: Review::new(model.case(scene, initial), effects, &model.advice),
+            review: Review::new(model.case(body, initial), effects, &model.advice),
             monitor: Monitor::default(),
             turn: Turn::default(),
             step,
@@ -173,9 +173,9 @@ impl<'a> Watch<'a> {
 }
 
 /// Moments at points of a mesh, which twist the element there alone: that excites shapes faster than any step.
-fn pointed_moments(scene: &Scene) -> Option<String> {
+fn pointed_moments(body: &Body) -> Option<String> {
     let is_pointed = |load: &Load| load.kind == LoadKind::Moment && matches!(load.place, LoadPlace::Point(_));
-    let load = scene.loads.iter().position(is_pointed).filter(|_| scene.body.has_elements())?;
+    let load = body.loads.iter().position(is_pointed).filter(|_| body.source.has_elements())?;
     Some(format!(
         "loads[{load}]: this moment has no `radius`, so that it twists the one element at its point, by an angle that depends on the \
          mesh. Most of its work goes into shapes that are faster than the steps, and the energy is not summed closely. Give it the \

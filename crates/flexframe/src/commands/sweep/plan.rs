@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use diagnostic::{Diagnosis, Diagnostic, Failure, Kind};
 use foreign_program::read_at_most;
 use keys::Hash;
-use scene::{AssignError, Scene, SceneError, System, assign, text_of};
+use scene::{AssignError, Body, Scene, SceneError, assign, text_of};
 use serde::Deserialize;
 use toml::{Table, Value};
 
@@ -83,7 +83,7 @@ pub(super) struct Plan {
     pub parameters: Vec<(String, Vec<Value>)>,
     pub results: BTreeMap<String, Asked>,
     /// The scenes of the bodies in each row, or why there are none.
-    pub rows: Vec<Result<System, String>>,
+    pub rows: Vec<Result<Scene, String>>,
     /// Hash for each row: of its scene and of the bytes of all files that are read for it.
     pub identities: Vec<u64>,
 }
@@ -124,7 +124,7 @@ impl Plan {
         };
         let unreadable = |error| Failure::from(of_scene(error).without_text());
         let of_all = text_of(&scene_path).map_err(unreadable)?;
-        let system = System::parse(&of_all, &scene_path).map_err(unreadable)?;
+        let scene = Scene::parse(&of_all, &scene_path).map_err(unreadable)?;
 
         let invalid = |key: &str, found: String, expected: &str| {
             let words = format!("`{key}`: found {found}, expected {expected}");
@@ -179,8 +179,8 @@ impl Plan {
             let text = assign(&of_all, &values).map_err(|AssignError { key, found, expected }| {
                 invalid(&format!("parameters.\"{key}\""), found, &expected)
             })?;
-            rows.push(match System::parse(&text, &scene_path) {
-                Ok(system) => Ok(system),
+            rows.push(match Scene::parse(&text, &scene_path) {
+                Ok(scene) => Ok(scene),
                 Err(refusal) => {
                     let words = refusal.to_string();
                     first_refusal.get_or_insert((row, refusal));
@@ -195,10 +195,10 @@ impl Plan {
             let with = in_words(&parameters, row);
             return Err(NoRow { with, source }.into());
         }
-        check_bodies(&system, &file.results).map_err(|(key, found, expected)| invalid(&key, found, &expected))?;
+        check_bodies(&scene, &file.results).map_err(|(key, found, expected)| invalid(&key, found, &expected))?;
         let identity = format!("{of_sweep}\n{of_all}");
         let identities = identities(&rows);
-        Ok(Self { title: system.title.clone(), identity, parameters, results: file.results, rows, identities })
+        Ok(Self { title: scene.title.clone(), identity, parameters, results: file.results, rows, identities })
     }
 
     /// True if something is asked of a run, and if the frequencies are asked for.
@@ -208,10 +208,10 @@ impl Plan {
     }
 
     /// True if the frequencies of the body of a scene are asked for.
-    pub fn asks_frequencies_of(&self, scene: &Scene) -> bool {
+    pub fn asks_frequencies_of(&self, given: &Body) -> bool {
         self.results.values().any(|asked| match asked {
-            Asked::Frequencies => scene.name.is_none(),
-            Asked::FrequenciesOf(body) => scene.name.as_ref() == Some(body),
+            Asked::Frequencies => given.name.is_none(),
+            Asked::FrequenciesOf(body) => given.name.as_ref() == Some(body),
             Asked::Final(_) | Asked::Peak(_) => false,
         })
     }
@@ -220,13 +220,13 @@ impl Plan {
     pub fn has_changed(&self, row: usize) -> bool {
         self.rows[row]
             .as_ref()
-            .is_ok_and(|system| identity_of_row(system, |scene| contents(&scene.body)) != self.identities[row])
+            .is_ok_and(|system| identity_of_row(system, |body| contents(&body.source)) != self.identities[row])
     }
 }
 
 /// Refuses results of a body that the scene does not have: the key, what was found, and what was expected.
-fn check_bodies(system: &System, results: &BTreeMap<String, Asked>) -> Result<(), (String, String, String)> {
-    let names: Vec<&str> = system.bodies.iter().filter_map(|scene| scene.name.as_deref()).collect();
+fn check_bodies(scene: &Scene, results: &BTreeMap<String, Asked>) -> Result<(), (String, String, String)> {
+    let names: Vec<&str> = scene.bodies.iter().filter_map(|given| given.name.as_deref()).collect();
     for (name, asked) in results {
         let (found, expected) = match asked {
             Asked::Frequencies if !names.is_empty() => (
@@ -245,13 +245,13 @@ fn check_bodies(system: &System, results: &BTreeMap<String, Asked>) -> Result<()
 }
 
 /// Hash for each row.
-fn identities(rows: &[Result<System, String>]) -> Vec<u64> {
+fn identities(rows: &[Result<Scene, String>]) -> Vec<u64> {
     // The files of each body are read once.
     let mut bodies: BTreeMap<String, Hash> = BTreeMap::new();
     let mut contents_of =
-        |scene: &Scene| *bodies.entry(format!("{:?}", scene.body)).or_insert_with(|| contents(&scene.body));
+        |body: &Body| *bodies.entry(format!("{:?}", body.source)).or_insert_with(|| contents(&body.source));
     let of_row =
-        |row: &Result<System, String>| row.as_ref().map_or(0, |system| identity_of_row(system, &mut contents_of));
+        |row: &Result<Scene, String>| row.as_ref().map_or(0, |system| identity_of_row(system, &mut contents_of));
     rows.iter().map(of_row).collect()
 }
 

@@ -3,7 +3,7 @@
 use diagnostic::{Diagnostic, Failure};
 use dynamics::{Island, Reached, Rows, Simulation, StepControl, StepError, SystemRun};
 use model::Model;
-use scene::System;
+use scene::Scene;
 
 use crate::motion::{StartSettings, begin_tied};
 
@@ -20,37 +20,36 @@ pub(crate) struct TiedMotion {
 }
 
 /// All bodies of a scene that are tied together, by systems, at the start.
-pub(crate) fn tied_motions(system: &System, models: &[Model]) -> Result<Vec<TiedMotion>, Failure> {
+pub(crate) fn tied_motions(scene: &Scene, models: &[Model]) -> Result<Vec<TiedMotion>, Failure> {
     // No step is taken.
     let at_start = |of| StartSettings { control: StepControl::Tolerance(1e-3), relaxed: false, ..of };
-    motions(system, models, at_start, |_| Ok(()))
+    motions(scene, models, at_start, |_| Ok(()))
 }
 
 /// The same where a run of the scene has them at a time.
-pub(crate) fn tied_motions_at(system: &System, models: &[Model], time: f64) -> Result<Vec<TiedMotion>, Failure> {
+pub(crate) fn tied_motions_at(scene: &Scene, models: &[Model], time: f64) -> Result<Vec<TiedMotion>, Failure> {
     let lead = |simulation: &mut Simulation| {
         simulation.set_stop_time(Some(time));
         while !matches!(simulation.advance(u64::MAX)?, Reached::Stop | Reached::End) {}
         Ok(())
     };
-    motions(system, models, |of| of, lead)
+    motions(scene, models, |of| of, lead)
 }
 
 fn motions(
-    system: &System,
+    scene: &Scene,
     models: &[Model],
     begun: impl FnOnce(StartSettings) -> StartSettings,
     lead: impl Fn(&mut Simulation) -> Result<(), StepError>,
 ) -> Result<Vec<TiedMotion>, Failure> {
     let models: Vec<&Model> = models.iter().collect();
-    let beginning =
-        begun(StartSettings { rows: Rows::Interval(system.time.end), ..StartSettings::of(system, &models) });
-    let springs = system.springs.iter().map(|spring| &spring.name);
-    let names: Vec<&String> = springs.chain(system.bushings.iter().map(|bushing| &bushing.name)).collect();
+    let beginning = begun(StartSettings { rows: Rows::Interval(scene.time.end), ..StartSettings::of(scene, &models) });
+    let springs = scene.springs.iter().map(|spring| &spring.name);
+    let names: Vec<&String> = springs.chain(scene.bushings.iter().map(|bushing| &bushing.name)).collect();
     let mut motions = Vec::new();
-    for Island { mut motion, bodies, joints, elements } in begin_tied(system, &models, &beginning)? {
-        lead(&mut motion).map_err(|source| source.in_file(&system.path))?;
-        let elements = elements.iter().map(|number| names[number - system.joints.len()].clone()).collect();
+    for Island { mut motion, bodies, joints, elements } in begin_tied(scene, &models, &beginning)? {
+        lead(&mut motion).map_err(|source| source.in_file(&scene.path))?;
+        let elements = elements.iter().map(|number| names[number - scene.joints.len()].clone()).collect();
         motions.extend(motion.system().map(|run| TiedMotion { bodies, joints, elements, run: run.clone() }));
     }
     Ok(motions)

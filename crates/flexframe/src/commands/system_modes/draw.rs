@@ -9,7 +9,7 @@ use figures::{Panel, ShapeGrid, View};
 use model::Model;
 use nalgebra::Vector3;
 use results::{Block, CellKind, Field, Grid, VtkHdf};
-use scene::System;
+use scene::Scene;
 
 use super::report::{SystemModes, body_names};
 use super::shape::SystemSurface;
@@ -25,7 +25,7 @@ const MAX_PANELS: usize = 20;
 /// # Errors
 /// [`Failure`].
 pub fn draw(
-    system: &System,
+    system: &Scene,
     models: &[Model],
     modes: &SystemModes,
     stem: &Path,
@@ -75,13 +75,13 @@ const ROUNDING: f64 = 1e-6;
 /// # Errors
 /// [`Failure`]; false, and no file, where no body has a mesh.
 pub fn write_fields(
-    system: &System,
+    scene: &Scene,
     models: &[Model],
     modes: &SystemModes,
     to: &Path,
     overwrite: bool,
 ) -> Result<bool, Failure> {
-    let surface = SystemSurface::new(system, models, modes, false)?;
+    let surface = SystemSurface::new(scene, models, modes, false)?;
     if surface.points.is_empty() || modes.vibrations.modes.is_empty() {
         return Ok(false);
     }
@@ -110,7 +110,7 @@ pub fn write_fields(
             connectivity: triangles.as_flattened().to_vec(),
             cells: CellKind::Triangle,
         };
-        parts.push((body_names(system, &[number]).concat(), grid, first..first + points));
+        parts.push((body_names(scene, &[number]).concat(), grid, first..first + points));
         first += points;
     }
     let blocks: Vec<Block<'_>> = parts.iter().map(|(name, grid, _)| Block { name, grid, fields: &fields }).collect();

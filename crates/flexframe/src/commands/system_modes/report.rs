@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use dynamics::{Effect, Spring, SteadyState, SystemMode, Vibrations};
 use report::{Form, Report, Value};
-use scene::{Choice, Damping, Scene, System};
+use scene::{Body, Choice, Damping, Scene};
 use serde::Serialize;
 
 use super::assembled::TiedMotion;
@@ -96,14 +96,14 @@ pub struct Share {
 
 impl SystemModesReport {
     pub(super) fn new(
-        system: &System,
+        scene: &Scene,
         motion: &TiedMotion,
         steady: &SteadyState,
         found: &Vibrations,
         rotors: Rotors,
     ) -> Self {
         let of_motion = motion.run.motion().system();
-        let bodies = body_names(system, &motion.bodies);
+        let bodies = body_names(scene, &motion.bodies);
         let joints: Vec<String> = of_motion.joints().iter().map(|joint| joint.name.clone()).collect();
         let springs = steady.linear.springs().map(|spring| match spring {
             Spring::Joint(joint) => joints[joint].clone(),
@@ -119,9 +119,9 @@ impl SystemModesReport {
             strained: shares(&of_all, &mode.elastic),
         };
         let rigid_modes = found.rigid.ncols() + found.zeros / 2;
-        let time = &system.units.time;
+        let time = &scene.units.time;
         let mut report = Self {
-            title: system.title.clone(),
+            title: scene.title.clone(),
             frequency_unit: frequency_unit(time),
             time_unit: time.clone(),
             time: motion.run.motion().time(),
@@ -137,10 +137,10 @@ impl SystemModesReport {
             bodies,
             joints,
         };
-        report.warnings.extend(report.unbalance(steady, motion.run.size(), &system.units.length));
+        report.warnings.extend(report.unbalance(steady, motion.run.size(), &scene.units.length));
         report.warnings.extend(report.growth());
-        let scenes = motion.bodies.iter().map(|body| &system.bodies[*body]);
-        let damping = scenes.zip(&report.bodies).filter_map(|(scene, name)| report.damping(scene, name));
+        let scenes = motion.bodies.iter().map(|body| &scene.bodies[*body]);
+        let damping = scenes.zip(&report.bodies).filter_map(|(given, name)| report.damping(given, name));
         let damping: Vec<String> = damping.collect();
         report.warnings.extend(damping);
         report
@@ -167,8 +167,8 @@ impl SystemModesReport {
     }
 
     /// Tells of a body that damps a vibration of the whole less than its modes.
-    fn damping(&self, scene: &Scene, body: &str) -> Option<String> {
-        let ratio = match &scene.modes.damping {
+    fn damping(&self, given: &Body, body: &str) -> Option<String> {
+        let ratio = match &given.modes.damping {
             Damping::Uniform(ratio) => *ratio,
             Damping::List(ratios) => ratios.iter().copied().fold(f64::INFINITY, f64::min),
             Damping::Table(_) | Damping::Rayleigh(_) => return None,
@@ -177,7 +177,7 @@ impl SystemModesReport {
             mode.frequency > 0.0 && mode.strained.iter().any(|share| share.name == body && share.part > ITS_OWN)
         };
         let (k, mode) = self.modes.iter().enumerate().find(|(_, mode)| is_its_own(mode))?;
-        let is_less = scene.effects.choices[Effect::Damping] != Choice::Off
+        let is_less = given.effects.choices[Effect::Damping] != Choice::Off
             && mode.growth <= 0.0
             && mode.damping_ratio < LESS * ratio;
         is_less.then(|| {
@@ -260,8 +260,8 @@ impl SystemModesReport {
 }
 
 /// Names of bodies by their numbers.
-pub(crate) fn body_names(system: &System, numbers: &[usize]) -> Vec<String> {
-    let name = |number: &usize| system.bodies[*number].name.clone().unwrap_or_else(|| "body".to_owned());
+pub(crate) fn body_names(scene: &Scene, numbers: &[usize]) -> Vec<String> {
+    let name = |number: &usize| scene.bodies[*number].name.clone().unwrap_or_else(|| "body".to_owned());
     numbers.iter().map(name).collect()
 }
 

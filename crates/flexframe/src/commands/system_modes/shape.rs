@@ -7,7 +7,7 @@ use dynamics::MotionState;
 use faer::c64;
 use model::{BuildError, Model};
 use nalgebra::Vector3;
-use scene::System;
+use scene::Scene;
 
 use super::report::SystemModes;
 use crate::commands::modes::require_surface;
@@ -43,7 +43,7 @@ impl<'a> SystemSurface<'a> {
     /// # Errors
     /// [`BuildError`] of a body whose surface is not known, and where the stress cannot be computed.
     pub(crate) fn new(
-        system: &System,
+        system: &Scene,
         models: &[Model],
         modes: &'a SystemModes,
         stress: bool,

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use dynamics::{BodyStiffening, Effect, SteadyError, StiffenedMode};
 use model::Model;
-use scene::System;
+use scene::Scene;
 use serde::Serialize;
 
 use super::assembled::TiedMotion;
@@ -61,7 +61,7 @@ impl From<&StiffenedMode> for StiffenedFrequency {
 
 /// The flexible bodies of a system in the motion that they start with.
 pub(super) fn stiffened(
-    system: &System,
+    scene: &Scene,
     models: &[Model],
     motion: &TiedMotion,
 ) -> Result<Vec<StiffenedBody>, SteadyError> {
@@ -80,12 +80,12 @@ pub(super) fn stiffened(
             moment: found.moment,
             deflection: largest(Surface::of_model(model)),
             stiffens: model.physics.effects[Effect::GeometricStiffening],
-            tolerance: system.bodies[*number].effects.tolerance,
+            tolerance: scene.bodies[*number].effects.tolerance,
             modes: found.modes.iter().map(StiffenedFrequency::from).collect(),
         })
     };
     let found = motion.run.motion().stiffening()?;
-    let names = body_names(system, &motion.bodies);
+    let names = body_names(scene, &motion.bodies);
     Ok(names.into_iter().zip(motion.bodies.iter().zip(found)).filter_map(of_body).collect())
 }
 

@@ -23,7 +23,7 @@ pub(crate) fn backbones(
     let large: Vec<usize> = (0..natural).filter(may_matter).collect();
     let mut of_modes = vec![None; natural];
     // Those of a bent body are other ones.
-    if large.is_empty() || model.reference.is_some() || !model.scene.body.bends_far() || !model.scene.backbones {
+    if large.is_empty() || model.reference.is_some() || !model.scene.source.bends_far() || !model.scene.backbones {
         return Ok(of_modes);
     }
     let OwnSecondOrder { second, along, inertia } = match structure.own_second_order(modes, &large) {

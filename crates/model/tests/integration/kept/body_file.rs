@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use model::{Builder, Cache, Model};
-use scene::{Body, Scene};
+use scene::{Body, BodySource};
 use sealed::{Declared, Format, Kind, SealedFile, Writer};
 
 use super::cache::{FORCE, built, built_with};
@@ -14,8 +14,8 @@ const MATERIAL: &str = "material = { young_modulus = 70e3, poisson_ratio = 0.3, 
 const MASS: &str = "point_masses = [{ at = [200.0, 0.0, 0.0], mass = 1e-6 }]";
 
 /// A scene in a folder of its own, with this body and number of modes.
-fn scene(folder: &Path, body: &str, modes: &str, rest: &str) -> Scene {
-    Scene::parse(&text(body, modes, rest), folder.join("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
+fn scene(folder: &Path, body: &str, modes: &str, rest: &str) -> Body {
+    Body::parse(&text(body, modes, rest), folder.join("scene.toml")).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn text(body: &str, modes: &str, rest: &str) -> String {
@@ -26,7 +26,7 @@ fn text(body: &str, modes: &str, rest: &str) -> String {
 }
 
 /// A folder with a mesh, and a body file that was made of it.
-fn reduced(modes: &str, rest: &str, matrices: bool) -> (tempfile::TempDir, Scene, PathBuf) {
+fn reduced(modes: &str, rest: &str, matrices: bool) -> (tempfile::TempDir, Body, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let mesh = folder.path().join("bar.msh");
     fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/bar.msh"), mesh).unwrap();
@@ -95,8 +95,8 @@ fn the_stress_from_a_body_file_is_the_same_to_the_last_bit_and_not_recovered_aga
         );
         let (folder, direct, _) = reduced(modes, &rest, false);
         let builder = Builder::default();
-        let stresses = |scene: &Scene| {
-            let model = builder.build(scene, |_| ()).unwrap();
+        let stresses = |body: &Body| {
+            let model = builder.build(body, |_| ()).unwrap();
             assert_eq!(model.static_answer(), (load == MOMENT).then_some(2));
             let stress = model.stress.as_ref().unwrap();
             let of_row = |now: dynamics::Observation| {
@@ -104,7 +104,7 @@ fn the_stress_from_a_body_file_is_the_same_to_the_last_bit_and_not_recovered_aga
                 let at_points: Vec<_> = stress.at_points(&now.modal_displacement).flatten().collect();
                 ([peak.von_mises, peak.left_out, peak.max_left_out].map(f64::to_bits), peak.node, at_points)
             };
-            model.start(scene).unwrap().map(|now| of_row(now.unwrap())).collect::<Vec<_>>()
+            model.start(body).unwrap().map(|now| of_row(now.unwrap())).collect::<Vec<_>>()
         };
         let expected = stresses(&direct);
         let counts = || [builder.cache.notes().assembled, builder.cache.notes().computed];
@@ -219,11 +219,11 @@ fn what_others_read_is_what_the_model_has() {
     assert_eq!(edges.len(), count);
     assert!(edges.iter().all(|[a, b]| edges.binary_search(&[*b, *a]).is_ok()));
     let attribute = |name: &str| file.text(name).unwrap().to_owned();
-    assert_eq!((attribute("title"), attribute("scene")), ("Bar".to_owned(), direct.source.clone()));
+    assert_eq!((attribute("title"), attribute("scene")), ("Bar".to_owned(), direct.text_alone.clone()));
 }
 
 fn message(folder: &Path, body: &str, modes: &str, rest: &str) -> String {
-    match Scene::parse(&text(body, modes, rest), folder.join("scene.toml")) {
+    match Body::parse(&text(body, modes, rest), folder.join("scene.toml")) {
         Err(error) => error.to_string(),
         Ok(scene) => Model::build(&scene, |_| ()).unwrap_err().to_string(),
     }
@@ -297,7 +297,7 @@ fn a_body_file_of_another_version_or_with_a_part_missing_is_refused() {
     let cut = message(folder.path(), file, MODES, SPIN);
     assert!(cut.contains("the body file is damaged") && cut.contains("were written"), "{cut}");
     // A bit of the numbers of the modes.
-    let scene = {
+    let body = {
         fs::write(&path, &whole).unwrap();
         scene(folder.path(), file, MODES, SPIN)
     };
@@ -307,16 +307,16 @@ fn a_body_file_of_another_version_or_with_a_part_missing_is_refused() {
     let mut damaged = whole.clone();
     damaged[at] ^= 1;
     fs::write(&path, damaged).unwrap();
-    let error = Model::build(&scene, |_| ()).unwrap_err().to_string();
+    let error = Model::build(&body, |_| ()).unwrap_err().to_string();
     assert!(error.contains("has been changed"), "{error}");
 }
 
 #[test]
 fn a_rigid_body_has_no_body_file() {
     let folder = tempfile::tempdir().unwrap();
-    let scene = crate::rigid("", "end = 1.0\nstep = 0.1");
-    assert!(matches!(scene.body, Body::Rigid(_)));
+    let body = crate::rigid("", "end = 1.0\nstep = 0.1");
+    assert!(matches!(body.source, BodySource::Rigid(_)));
     let error =
-        Builder::default().write_body(&scene, &folder.path().join("b.h5"), false, |_| ()).unwrap_err().to_string();
+        Builder::default().write_body(&body, &folder.path().join("b.h5"), false, |_| ()).unwrap_err().to_string();
     assert!(error.contains("a body with a mesh"), "{error}");
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use model::{Builder, Cache, CacheNotes, Needs};
-use scene::{Body, Scene};
+use scene::{Body, BodySource};
 
 use crate::{CLAMPED, bar, observations};
 
@@ -17,19 +17,19 @@ const GRAVITY: &str = "[[loads]]\nkind = \"gravity\"\ndirection = [0.0, 0.0, -1.
                        history = { kind = \"constant\" }\n";
 
 /// All that a model has, to the last bit, without the time that it took; then how often matrices were assembled.
-pub fn built(scene: &Scene) -> (String, usize) {
-    built_with(&Cache::none(), scene)
+pub fn built(body: &Body) -> (String, usize) {
+    built_with(&Cache::none(), body)
 }
 
 /// The same with a cache.
-pub fn built_with(cache: &Cache, scene: &Scene) -> (String, usize) {
-    built_by(&Builder::with_cache(cache.clone()), scene)
+pub fn built_with(cache: &Cache, body: &Body) -> (String, usize) {
+    built_by(&Builder::with_cache(cache.clone()), body)
 }
 
 /// The same with needs.
-pub fn built_by(builder: &Builder, scene: &Scene) -> (String, usize) {
+pub fn built_by(builder: &Builder, body: &Body) -> (String, usize) {
     let before = builder.cache.notes().assembled;
-    let model = builder.build(scene, |_| ()).unwrap();
+    let model = builder.build(body, |_| ()).unwrap();
     let assembled = builder.cache.notes().assembled - before;
     let meshed = model.meshed.as_ref().unwrap();
     let modes = &meshed.modes;
@@ -46,7 +46,7 @@ pub fn built_by(builder: &Builder, scene: &Scene) -> (String, usize) {
             ),
             (model.damping_ratios(), &model.advice, model.refusal, &meshed.mesh, meshed.matrix_bytes),
             (&modes.eigenvalues, &modes.shapes, &modes.rigid, &modes.residuals, &modes.force_residuals),
-            observations(scene, &model),
+            observations(body, &model),
         )
     );
     (text, assembled)
@@ -118,10 +118,10 @@ fn only_what_is_the_same_is_read() {
     let modes = "flexible = 6\nstatic_correction = true";
     // It depends on the amplitude which modes may bend the body far, and are asked for their backbones.
     let needs = Needs { backbones: false, ..Needs::default() };
-    let assembled = |scene: &Scene| {
-        let (direct, _) = built_by(&Builder::default().needing(needs.clone()), scene);
+    let assembled = |body: &Body| {
+        let (direct, _) = built_by(&Builder::default().needing(needs.clone()), body);
         let builder = Builder::with_cache(Cache::new(folder.path(), LIMIT)).needing(needs.clone());
-        let (kept, assembled) = built_by(&builder, scene);
+        let (kept, assembled) = built_by(&builder, body);
         assert!(kept == direct);
         assembled
     };
@@ -139,8 +139,8 @@ fn only_what_is_the_same_is_read() {
     }
     assert_eq!(assembled(&forced(&FORCE.replace("0.5, 0.0", "0.0, 0.5"))), 1);
     let mut heavier = bar(modes, &spin(100.0), TIME);
-    let Body::Meshed(body) = &mut heavier.body else { panic!() };
-    body.point_masses.push(scene::PointMass { at: [200.0, 0.0, 0.0], mass: 1e-6, spread: None });
+    let BodySource::Meshed(meshed) = &mut heavier.source else { panic!() };
+    meshed.point_masses.push(scene::PointMass { at: [200.0, 0.0, 0.0], mass: 1e-6, spread: None });
     assert_eq!(assembled(&heavier), 1);
 }
 
@@ -154,13 +154,13 @@ fn answers_of_another_size_of_a_load_are_the_same_to_the_last_bit() {
         let effects = "[effects]\nlarge_deflection = true\nrefuse = false\n";
         bar("flexible = 2\nlarge = 2\nstatic_correction = false", &format!("{pin}{force}{effects}"), TIME)
     });
-    let direct = scenes.each_ref().map(|scene| built(scene).0);
-    for (first, scene) in scenes.iter().enumerate() {
+    let direct = scenes.each_ref().map(|body| built(body).0);
+    for (first, body) in scenes.iter().enumerate() {
         let folder = tempfile::tempdir().unwrap();
         let cache = Cache::new(folder.path(), LIMIT);
-        built_with(&cache, scene);
-        for (next, (scene, direct)) in scenes.iter().zip(&direct).enumerate() {
-            assert!(built_with(&cache, scene).0 == *direct, "{next} after {first}");
+        built_with(&cache, body);
+        for (next, (body, direct)) in scenes.iter().zip(&direct).enumerate() {
+            assert!(built_with(&cache, body).0 == *direct, "{next} after {first}");
         }
     }
 }
@@ -170,20 +170,20 @@ fn another_mesh_under_the_same_name_is_another_body() {
     let folder = tempfile::tempdir().unwrap();
     let mesh = folder.path().join("bar.msh");
     fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/bar.msh"), &mesh).unwrap();
-    let mut scene = bar("flexible = 3", "", TIME);
-    let Body::Meshed(body) = &mut scene.body else { panic!() };
-    body.mesh.clone_from(&mesh);
+    let mut body = bar("flexible = 3", "", TIME);
+    let BodySource::Meshed(meshed) = &mut body.source else { panic!() };
+    meshed.mesh.clone_from(&mesh);
     let cache = Cache::new(folder.path().join("cache"), LIMIT);
-    let (before, _) = built_with(&cache, &scene);
-    assert_eq!(built_with(&cache, &scene).1, 0);
+    let (before, _) = built_with(&cache, &body);
+    assert_eq!(built_with(&cache, &body).1, 0);
     // A node that moves by a hair.
     let text = fs::read_to_string(&mesh).unwrap();
     let moved = text.replacen("\n200 ", "\n200.000001 ", 1);
     assert_ne!(text, moved);
     fs::write(&mesh, moved).unwrap();
-    let (after, assembled) = built_with(&cache, &scene);
+    let (after, assembled) = built_with(&cache, &body);
     assert_eq!(assembled, 1);
-    assert!(before != after && after == built(&scene).0);
+    assert!(before != after && after == built(&body).0);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use fem_tet10::read_msh;
 use model::Model;
-use scene::Scene;
+use scene::Body;
 
 use super::Files;
 use crate::{build, observations};
@@ -210,7 +210,7 @@ fn curved_shells_find_their_nodes() {
 }
 
 /// A scene in which the plate tumbles while it vibrates.
-fn tumbling(files: &Files, body: &str) -> Scene {
+fn tumbling(files: &Files, body: &str) -> Body {
     files.scene(
         body,
         "flexible = 8",
@@ -229,9 +229,9 @@ fn the_hexahedral_plate_tumbles_as_the_tetrahedral_one() {
     let (files, _) = calculix(&grid([40, 4, 1], false, plate).text("C3D20", SOLID));
     let of_mesh = of_mesh(&meshes().join("plate_lc12.msh"));
     let run = |body: &str| {
-        let scene = tumbling(&files, body);
-        let model = build(&scene);
-        let rows = observations(&scene, &model);
+        let given = tumbling(&files, body);
+        let model = build(&given);
+        let rows = observations(&given, &model);
         (model, rows)
     };
     let (hexahedra, of_hexahedra) = run(BODY);

@@ -153,8 +153,8 @@ fn rows_that_are_not_known() {
     let rows: Vec<String> =
         labels.iter().flat_map(|label| (1..=3).map(move |dof| format!("{label}.{dof}\n"))).collect();
     files.write("rows.dof", &rows.concat());
-    let scene = files.scene(&body, "flexible = 2", "", "end = 1e-3\nstep = 1e-5");
-    crate::build(&scene);
+    let given = files.scene(&body, "flexible = 2", "", "end = 1e-3\nstep = 1e-5");
+    crate::build(&given);
     files.write("rows.dof", &rows.concat().replacen("1.3\n", "1.0\n", 1));
     said(&files, "rows.dof:3");
     files.write("rows.dof", &rows.concat().replacen("1.3\n", "777.3\n", 1));
@@ -230,7 +230,7 @@ fn keys_that_need_elements_are_refused_in_the_scene() {
     let files = cube();
     let refused = |rest: &str, body: &str, words: &[&str]| {
         let text = files.text_of_scene(body, "flexible = 2", rest, "end = 1e-3\nstep = 1e-5");
-        let message = scene::Scene::parse(&text, files.file("scene.toml")).unwrap_err().to_string();
+        let message = scene::Body::parse(&text, files.file("scene.toml")).unwrap_err().to_string();
         for words in words {
             assert!(message.contains(words), "{words:?} is not in: {message}");
         }

@@ -1,15 +1,15 @@
 //! How frequencies go with amplitudes, against geometrically nonlinear finite elements.
 
 use model::Model;
-use scene::Scene;
+use scene::Body;
 
 /// The plate of the paper with its first mode displaced by q.
 fn plate(q: f64) -> Model {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/plate.toml");
-    let mut scene = Scene::read(path).unwrap();
-    scene.loads.clear();
-    scene.initial.modal_displacement = vec![q];
-    Model::build(&scene, |_| ()).unwrap()
+    let mut body = Body::read(path).unwrap();
+    body.loads.clear();
+    body.initial.modal_displacement = vec![q];
+    Model::build(&body, |_| ()).unwrap()
 }
 
 /// Independent reference: nonlinear finite elements, given with the project, on a mesh of the plate with a first

@@ -3,7 +3,7 @@
 use advice::{Broken, Review};
 use model::Model;
 
-use crate::{DENSITY, LENGTH, Scene, YOUNG, bar, build, observations, point};
+use crate::{Body, DENSITY, LENGTH, YOUNG, bar, build, observations, point};
 
 const ACCELERATION: f64 = 5e6;
 /// −ρaL²/2E at the tip.
@@ -17,16 +17,16 @@ fn pushed() -> String {
 }
 
 /// Critically damped, so that it comes to rest in the frame of the slide; `time` ends with the scheme.
-fn driven(modes: &str, time: &str) -> Scene {
+fn driven(modes: &str, time: &str) -> Body {
     bar(&format!("{modes}\ndamping_ratio = 1.0"), &pushed(), &format!("end = 2e-3\n{time}"))
 }
 
 /// How far the tip is shortened at the end over theory, what the review says, and the reason in the row of static shapes.
-fn shortened(scene: &Scene) -> (Model, f64, Vec<Broken>, String) {
-    let model = build(scene);
-    let initial = model.initial(scene);
-    let mut review = Review::new(model.case(scene, &initial), model.physics.effects, &model.advice);
-    let rows = observations(scene, &model);
+fn shortened(body: &Body) -> (Model, f64, Vec<Broken>, String) {
+    let model = build(body);
+    let initial = model.initial(body);
+    let mut review = Review::new(model.case(body, &initial), model.physics.effects, &model.advice);
+    let rows = observations(body, &model);
     rows.iter().for_each(|row| review.observe(row).unwrap());
     let found = point(&model, rows.last().unwrap(), "tip").elastic_displacement_body.x / EXACT;
     let (broken, why) = (review.broken(), model.advice.static_correction.why.clone());

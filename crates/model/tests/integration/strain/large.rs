@@ -37,7 +37,7 @@ fn auto_leaves_it_off_where_it_cannot_be_or_is_not_wanted() {
         assert_eq!(large("", far, &time), [] as [usize; 0]);
         // A refusal in words, before anything is built.
         let text = format!("[effects]\nlarge_deflection = true\n[time]\n{time}");
-        let found = scene::Scene::parse(&crate::strain::large::whole(&text), "scene.toml").unwrap_err().to_string();
+        let found = scene::Body::parse(&crate::strain::large::whole(&text), "scene.toml").unwrap_err().to_string();
         assert!(found.contains("large_deflection = true` with the paper's formulation"), "{found}");
     }
     assert_eq!(build(&rigid("", "end = 1.0\nstep = 1e-2")).large_modes(), [] as [usize; 0]);

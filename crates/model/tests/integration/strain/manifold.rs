@@ -3,12 +3,12 @@
 
 use dynamics::Observation;
 use model::Model;
-use scene::Scene;
+use scene::Body;
 
 use crate::{build, observations, parse};
 
 /// The plate of the paper with ten undamped modes.
-pub fn plate(modes: &str, rest: &str, initial: &str, time: &str) -> (Scene, Model) {
+pub fn plate(modes: &str, rest: &str, initial: &str, time: &str) -> (Body, Model) {
     let mut masses = String::new();
     for x in [-500.0, 500.0] {
         for y in [-25.0, 25.0] {

@@ -2,25 +2,25 @@
 
 use advice::{Broken, Review};
 
-use crate::{DENSITY, LENGTH, Scene, YOUNG, bar, build, observations, point};
+use crate::{Body, DENSITY, LENGTH, YOUNG, bar, build, observations, point};
 
 const SPIN: f64 = 1000.0;
 /// ρΩ²a³/3E of a bar of half length a.
 const EXACT: f64 = DENSITY * SPIN * SPIN * LENGTH * LENGTH * LENGTH / (24.0 * YOUNG);
 
 /// Critically damped, so that what is stretched at once comes to rest; `time` ends with the scheme.
-fn spinning(modes: &str, effects: &str, time: &str) -> Scene {
+fn spinning(modes: &str, effects: &str, time: &str) -> Body {
     let rest = format!("[effects]\n{effects}\n[initial]\nangular_velocity = [0.0, 0.0, {SPIN:?}]");
     bar(&format!("{modes}\ndamping_ratio = 1.0"), &rest, &format!("end = 0.01\n{time}"))
 }
 
 /// Static shapes, how far the tip is from the middle beyond its place at the end, over that by theory, what the review
 /// says, and the reason in the row of static shapes.
-fn stretched(scene: &Scene) -> (usize, f64, Vec<Broken>, String) {
-    let model = build(scene);
-    let initial = model.initial(scene);
-    let mut review = Review::new(model.case(scene, &initial), model.physics.effects, &model.advice);
-    let rows = observations(scene, &model);
+fn stretched(body: &Body) -> (usize, f64, Vec<Broken>, String) {
+    let model = build(body);
+    let initial = model.initial(body);
+    let mut review = Review::new(model.case(body, &initial), model.physics.effects, &model.advice);
+    let rows = observations(body, &model);
     rows.iter().for_each(|row| review.observe(row).unwrap());
     let last = rows.last().unwrap();
     let place = |name: &str| point(&model, last, name).displacement;
@@ -73,8 +73,8 @@ fn more_modes_hold_it() {
 /// Closed form: ρΩ²a³/(3E), of which nothing is there.
 #[test]
 fn who_leaves_them_out_is_told_by_the_table_alone() {
-    let scene = spinning("flexible = 6\nstatic_correction = false", "geometric_stiffening = false", "step = 1e-4");
-    let (shapes, found, broken, why) = stretched(&scene);
+    let body = spinning("flexible = 6\nstatic_correction = false", "geometric_stiffening = false", "step = 1e-4");
+    let (shapes, found, broken, why) = stretched(&body);
     assert!(shapes == 0 && found.abs() < 1e-2 && broken.is_empty(), "{shapes} {found} {broken:?}");
     assert!(why.contains("leave out of the static response to the spin"), "{why}");
 }

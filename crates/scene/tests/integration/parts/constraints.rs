@@ -1,6 +1,6 @@
 //! Constraints and drives of the body.
 
-use scene::{Constraint, DrivenSpeed, HeldDirections, HingeLine, History, Region, Scene};
+use scene::{Body, Constraint, DrivenSpeed, HeldDirections, HingeLine, History, Region};
 
 use crate::common::EXAMPLE;
 
@@ -220,7 +220,7 @@ fn a_rigid_body_is_held_without_nodes() {
         format!("kind = \"hinge\"\nat = [0, 0, 0]\naxis = [0, 0, 1]\n{motion}"),
         format!("kind = \"slider\"\ndirection = [0, 0, 1]\n{motion}"),
     ] {
-        Scene::parse(&text(&lines), "a.toml").unwrap_or_else(|error| panic!("{error}"));
+        Body::parse(&text(&lines), "a.toml").unwrap_or_else(|error| panic!("{error}"));
     }
     for (lines, key, words) in [
         ("kind = \"pin\"\nat = [0, 0, 0]\nradius = 1", "radius", "found a part of a mesh, expected none"),
@@ -230,7 +230,7 @@ fn a_rigid_body_is_held_without_nodes() {
         ("kind = \"clamp\"\ngroup = \"a\"", "kind", "found a rigid body that is clamped"),
         ("kind = \"support\"\ndirections = [\"x\"]\ngroup = \"a\"", "group", "found a part of a mesh"),
     ] {
-        let message = Scene::parse(&text(lines), "a.toml").unwrap_err().to_string();
+        let message = Body::parse(&text(lines), "a.toml").unwrap_err().to_string();
         assert!(message.contains(&format!("`constraints[0].{key}`: {words}")), "{message}");
     }
 }

@@ -111,7 +111,7 @@ fn the_paper_s_formulation_has_the_effects_that_it_has() {
         .replace("formulation = \"conservative\"", "formulation = \"paper\"")
         .replace("scheme = \"exponential\"", "scheme = \"paper\"");
     let parse = |line: &str| {
-        scene::Scene::parse(&of_paper.replace("[initial]", &format!("[effects]\n{line}\n[initial]")), "dir/plate.toml")
+        scene::Body::parse(&of_paper.replace("[initial]", &format!("[effects]\n{line}\n[initial]")), "dir/plate.toml")
     };
     for line in ["coriolis = false", "deformed_inertia = false", "rotation = false", "geometric_stiffening = true"] {
         let message = parse(line).unwrap_err().to_string();

@@ -1,6 +1,6 @@
 //! Loads of the body.
 
-use scene::{History, Load, LoadFrame, LoadKind, LoadPlace, Scene};
+use scene::{Body, History, Load, LoadFrame, LoadKind, LoadPlace};
 
 use crate::common::EXAMPLE;
 
@@ -117,7 +117,7 @@ fn surfaces_need_a_mesh() {
         ("kind = \"moment\"\nat = [0, 0, 0]\ndirection = [0, 0, 1]\namplitude = 1\nradius = 2", "radius"),
     ] {
         let text = free.replace(crate::parts::section(FROM, TO), &format!("[[loads]]\n{lines}\n\n"));
-        let message = Scene::parse(&text, "a.toml").unwrap_err().to_string();
+        let message = Body::parse(&text, "a.toml").unwrap_err().to_string();
         let words = format!("`loads[0].{key}`: found a part of a mesh, expected none, since `rigid` in [body]");
         assert!(message.contains(&words), "{message}");
     }

@@ -8,7 +8,7 @@ mod loads;
 mod modes;
 mod rigid;
 
-use scene::Scene;
+use scene::Body;
 
 /// The lines of the example from the section `from` up to the section `to`.
 fn section(from: &str, to: &str) -> &'static str {
@@ -16,9 +16,9 @@ fn section(from: &str, to: &str) -> &'static str {
 }
 
 /// The example with the section from `from` up to `to` replaced.
-fn with(from: &str, to: &str, new: &str) -> Scene {
+fn with(from: &str, to: &str, new: &str) -> Body {
     let text = common::EXAMPLE.replace(section(from, to), &format!("{new}\n"));
-    Scene::parse(&text, "dir/plate.toml").unwrap_or_else(|error| panic!("{new}: {error}"))
+    Body::parse(&text, "dir/plate.toml").unwrap_or_else(|error| panic!("{new}: {error}"))
 }
 
 /// Asserts that the section from `from` up to `to` of the example, replaced by `new`, is refused at `mark`, for `key`,

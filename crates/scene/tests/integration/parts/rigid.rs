@@ -1,6 +1,6 @@
 //! A rigid body without a mesh.
 
-use scene::{Body, Flexible, RigidBody, Scene};
+use scene::{Body, BodySource, Flexible, RigidBody};
 
 use crate::common::EXAMPLE;
 
@@ -16,8 +16,8 @@ fn text(keys: &str) -> String {
 }
 
 fn rigid(keys: &str) -> RigidBody {
-    match Scene::parse(&text(keys), "a.toml").unwrap_or_else(|error| panic!("{error}")).body {
-        Body::Rigid(body) => body,
+    match Body::parse(&text(keys), "a.toml").unwrap_or_else(|error| panic!("{error}")).source {
+        BodySource::Rigid(body) => body,
         body => panic!("{body:?}"),
     }
 }
@@ -60,24 +60,24 @@ fn inertia_is_moved_to_the_centre_of_mass() {
 
 #[test]
 fn it_needs_no_modes_and_takes_none() {
-    let scene = Scene::parse(&text(TOP), "a.toml").unwrap();
-    assert_eq!(scene.modes.flexible, Flexible::Count(0));
+    let body = Body::parse(&text(TOP), "a.toml").unwrap();
+    assert_eq!(body.modes.flexible, Flexible::Count(0));
     let modes = |lines: &str| text(TOP).replace("[frame]", &format!("[modes]\n{lines}\n[frame]"));
-    let given = Scene::parse(&modes("flexible = 0"), "a.toml").unwrap();
-    assert_eq!((&given.modes, &given.body), (&scene.modes, &scene.body));
+    let given = Body::parse(&modes("flexible = 0"), "a.toml").unwrap();
+    assert_eq!((&given.modes, &given.source), (&body.modes, &body.source));
     for lines in ["flexible = 3", "flexible = \"auto\""] {
-        let message = Scene::parse(&modes(lines), "a.toml").unwrap_err().to_string();
+        let message = Body::parse(&modes(lines), "a.toml").unwrap_err().to_string();
         let words = "`modes.flexible`: found flexible modes of a rigid body, expected 0, since `rigid`";
         assert!(message.contains(words) && message.contains("= remove [modes], or give `mesh`"), "{message}");
     }
-    let message = Scene::parse(&modes("flexible = 0\nstatic_correction = true"), "a.toml").unwrap_err().to_string();
+    let message = Body::parse(&modes("flexible = 0\nstatic_correction = true"), "a.toml").unwrap_err().to_string();
     assert!(message.contains("`modes.static_correction`: found a static correction of a body without"), "{message}");
 }
 
 #[test]
 fn it_has_no_stress() {
     for key in ["stress", "peak_stress"] {
-        let message = Scene::parse(&format!("{}\n{key} = true\n", text(TOP)), "a.toml").unwrap_err().to_string();
+        let message = Body::parse(&format!("{}\n{key} = true\n", text(TOP)), "a.toml").unwrap_err().to_string();
         assert!(message.contains(&format!("`output.{key}`: found true, expected a body with a mesh")), "{message}");
     }
 }
@@ -101,13 +101,13 @@ fn what_is_no_rigid_body() {
         (TOP.replace("mass = 20", "mass = 1e308"), "inertia", "principal moments"),
         (TOP.replace("[0, 0, 1]", "[0, 0, 1e200]"), "inertia", "a tensor with the largest entry"),
     ] {
-        let message = Scene::parse(&text(&keys), "a.toml").unwrap_err().to_string();
+        let message = Body::parse(&text(&keys), "a.toml").unwrap_err().to_string();
         assert!(message.contains(&format!("`body.rigid.{key}`: ")) && message.contains(words), "{words}: {message}");
     }
     // A point mass has to be tied.
     let alone = TOP.replace("[[21, 0, 0], [0, 21, 0], [0, 0, 2]]", "[[0, 0, 0], [0, 0, 0], [0, 0, 0]]");
     let alone = alone.replace(", about = [0, 0, 0]", "");
-    let message = Scene::parse(&text(&alone), "a.toml").unwrap_err().to_string();
+    let message = Body::parse(&text(&alone), "a.toml").unwrap_err().to_string();
     assert!(message.contains("zeros for a body that neither a joint nor a spring ties"), "{message}");
     // A flat body, its moments written with four digits.
     rigid("mass = 1, center_of_mass = [0, 0, 0], inertia = [[1.333, 0, 0], [0, 1.333, 0], [0, 0, 2.667]]");
@@ -120,14 +120,14 @@ fn mesh_or_rigid() {
         let others = [MESH, MATERIAL, POINT_MASSES].into_iter().filter(|other| *other != from);
         let text = others.fold(EXAMPLE.to_owned(), |text, other| text.replace(other, "# "));
         let text = text.replace("[modes]\nflexible = 10", &format!("{rigid}\n[modes]\nflexible = 0"));
-        let message = Scene::parse(&text, "a.toml").unwrap_err().to_string();
+        let message = Body::parse(&text, "a.toml").unwrap_err().to_string();
         let words = format!("`body.{key}`: found both `rigid` and `{key}`, expected mass properties, or a mesh");
         assert!(message.contains(&words), "{message}");
     }
     // A material is one of a mesh; without it the body has nothing of its own.
     crate::common::refused(MESH, "#", "[body]", "body.mesh", &["`mesh` is missing"]);
     let text = EXAMPLE.replace(MESH, "# ").replace(MATERIAL, "# ");
-    let message = Scene::parse(&text, "a.toml").unwrap_err().to_string();
+    let message = Body::parse(&text, "a.toml").unwrap_err().to_string();
     for words in
         ["a body with nothing of its own", "one of `mesh`, `rigid`, `file` and `matrices`", "`flexframe reduce`"]
     {

@@ -21,8 +21,10 @@ const MISSED: f64 = 0.05;
 const SCATTERED: f64 = 2.0;
 
 /// Parameters by measured frequencies.
-pub(super) struct Fitted {
+pub struct Fitted {
+    /// The parameters, as asked for.
     pub parameters: Vec<FittedParameter>,
+    /// The modes, in the order of the table.
     pub modes: Vec<FittedMode>,
     /// Between the parameters; between logarithms but for Poisson's ratios.
     pub correlation: Vec<Vec<f64>>,
@@ -39,7 +41,7 @@ pub(super) struct Fitted {
 }
 
 /// A parameter that was fitted.
-pub(super) struct FittedParameter {
+pub struct FittedParameter {
     /// The path of its key, or `thickness.GROUP.AXIS`.
     pub name: String,
     /// True if it stands in the scene; false of a factor on the shape of the mesh.
@@ -53,7 +55,7 @@ pub(super) struct FittedParameter {
 }
 
 /// A measured mode.
-pub(super) struct FittedMode {
+pub struct FittedMode {
     /// Line of the table, from 1.
     pub line: usize,
     /// Number of the mode of the model, from 1.
@@ -70,7 +72,7 @@ pub(super) struct FittedMode {
 
 impl Fitted {
     /// The report; the scene with the parameters is written to a file where one is named.
-    pub fn report(self, scene: &Shared, output: Option<&Path>) -> Result<Report, Failure> {
+    pub(super) fn report(self, scene: &Shared, output: Option<&Path>) -> Result<Report, Failure> {
         if let Some(output) = output {
             write_whole(output, self.scene_text(scene)?).map_err(WriteError::of(output))?;
         }

@@ -2,7 +2,7 @@
 
 use diagnostic::{Failure, Kind};
 use model::{BuildProgress, Builder, Parameter, RatesOf};
-use scene::{Measured, Shared, System};
+use scene::{Measured, Scene, Shared};
 
 use crate::commands::linear::gradient::number::Number;
 use crate::commands::linear::gradient::system::Varied;
@@ -14,7 +14,7 @@ const FAR: f64 = 20.0;
 
 /// A body or a system with its parameters.
 pub(super) struct Subject {
-    system: System,
+    system: Scene,
     numbers: Vec<Number>,
     varied: Varied,
 }
@@ -28,21 +28,21 @@ pub(super) struct Found {
 
 impl Subject {
     pub fn new(
-        system: &System,
+        scene: &Scene,
         builder: &Builder,
         names: &[String],
         measured: &Measured,
         progress: impl FnMut(BuildProgress),
     ) -> Result<Self, Failure> {
-        let all = Number::all(system)?;
+        let all = Number::all(scene)?;
         check(names, || all.iter().map(|number| number.name.clone()).collect(), measured)?;
-        if system.has_connections() && !measured.places.is_empty() {
+        if scene.has_connections() && !measured.places.is_empty() {
             let wrong = Kind::Input.of(&measured.file).found("shapes");
             let expected = "frequencies alone: modes of bodies in joints are matched by their order";
             return Err(wrong.expected(expected).help("leave the shapes out, and put the lines in order").into());
         }
-        let numbers = Number::named(system, names)?;
-        Ok(Self { system: system.clone(), numbers, varied: Varied::new(system, builder, progress)? })
+        let numbers = Number::named(scene, names)?;
+        Ok(Self { system: scene.clone(), numbers, varied: Varied::new(scene, builder, progress)? })
     }
 
     pub fn names(&self) -> Vec<String> {
@@ -95,9 +95,9 @@ impl Subject {
                 (found.frequencies, rates, modes)
             }
             Varied::System(varied) => {
-                let mut system = self.system.clone();
-                self.numbers.iter().zip(&values).for_each(|(number, value)| number.set(&mut system, *value));
-                let found = varied.rates(&system, &self.numbers, &[])?;
+                let mut scene = self.system.clone();
+                self.numbers.iter().zip(&values).for_each(|(number, value)| number.set(&mut scene, *value));
+                let found = varied.rates(&scene, &self.numbers, &[])?;
                 let (count, there) = (measured.modes.len(), found.frequencies.len());
                 if count > there {
                     let wrong = Kind::Input.of(&measured.file).found(format!("{count} measured modes"));

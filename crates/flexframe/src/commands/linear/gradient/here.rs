@@ -7,7 +7,7 @@ use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{CommonSpin, SteadyError, SteadyState, SystemMode, Vibrations};
 use faer::Mat;
 use model::Model;
-use scene::System;
+use scene::Scene;
 
 use super::number::{Number, Place};
 use super::varying::{REPEATED, Varying};
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-8;
 
 /// A system where it stands at the start.
 pub(super) struct Here<'a> {
-    pub system: &'a System,
+    pub system: &'a Scene,
     pub models: &'a [Model],
     pub motion: TiedMotion,
     pub steady: SteadyState,
@@ -41,20 +41,20 @@ impl<'a> NumbersOfBody<'a> {
 }
 
 impl<'a> Here<'a> {
-    pub fn new(system: &'a System, models: &'a [Model]) -> Result<Self, Failure> {
-        let (motion, steady) = steady(system, models)?;
+    pub fn new(scene: &'a Scene, models: &'a [Model]) -> Result<Self, Failure> {
+        let (motion, steady) = steady(scene, models)?;
         let linear = &steady.linear;
-        let failed = |source: SteadyError| source.in_file(&system.path);
+        let failed = |source: SteadyError| source.in_file(&scene.path);
         let Vibrations { rigid, zeros, modes } = linear.vibrations().map_err(failed)?;
         let mut modes: Vec<SystemMode> = modes.into_iter().filter(|mode| mode.circular_frequency() > 0.0).collect();
         modes.sort_by(|a, b| a.circular_frequency().total_cmp(&b.circular_frequency()));
         for matrix in [&linear.stiffness, &linear.damping] {
             if (matrix - matrix.transpose()).norm_max() > ROUNDING * matrix.norm_max() {
-                return Err(loaded(system));
+                return Err(loaded(scene));
             }
         }
         let is_loose = rigid.ncols() > 0 || zeros > 0;
-        Ok(Self { system, models, motion, steady, is_loose, modes })
+        Ok(Self { system: scene, models, motion, steady, is_loose, modes })
     }
 
     pub fn path(&self) -> PathBuf {
@@ -121,22 +121,22 @@ impl<'a> Here<'a> {
 }
 
 /// The refusal of a system whose place depends on its stiffnesses.
-fn loaded(system: &System) -> Failure {
+fn loaded(scene: &Scene) -> Failure {
     let words =
         "found bodies that forces deform at the start, whose vibrations follow stiffnesses and materials in two ways";
     let help = "take the loads and preloads out, and place the bodies so that springs have no force";
-    Kind::Refused.of(&system.path).help(help).says(words)
+    Kind::Refused.of(&scene.path).help(help).says(words)
 }
 
 /// The one system of a scene where it stands at the start.
-fn steady(system: &System, models: &[Model]) -> Result<(TiedMotion, SteadyState), Failure> {
-    let mut motions = tied_motions(system, models)?;
+fn steady(scene: &Scene, models: &[Model]) -> Result<(TiedMotion, SteadyState), Failure> {
+    let mut motions = tied_motions(scene, models)?;
     let (Some(motion), true) = (motions.pop(), motions.is_empty()) else {
         let found = format!("{} systems that nothing ties together", motions.len() + 1);
-        let wrong = Kind::Input.of(&system.path).found(found).expected("one");
+        let wrong = Kind::Input.of(&scene.path).found(found).expected("one");
         return Err(wrong.help("make a scene of each").into());
     };
-    let failed = |source: SteadyError| source.in_file(&system.path);
+    let failed = |source: SteadyError| source.in_file(&scene.path);
     let of_motion = motion.run.motion();
     let steady = Rotors::of(of_motion, |_| false).steady_state(of_motion, &CommonSpin::REST).map_err(failed)?;
     Ok((motion, steady))

@@ -3,7 +3,7 @@
 use diagnostic::{Failure, Kind};
 use fem_tet10::BodyNumber;
 use model::{BuildError, Parameter};
-use scene::{AlongAndAbout, Body, MeshedBody, Scene, System, one_of};
+use scene::{AlongAndAbout, Body, BodySource, MeshedBody, Scene, one_of};
 
 use crate::commands::modes::lone_body;
 
@@ -44,12 +44,12 @@ impl Number {
     ///
     /// # Errors
     /// A body whose numbers cannot be listed.
-    pub fn all(system: &System) -> Result<Vec<Self>, Failure> {
-        if !system.has_connections() {
-            let numbers = Parameter::all(lone_body(system).map_err(BuildError::from)?);
+    pub fn all(scene: &Scene) -> Result<Vec<Self>, Failure> {
+        if !scene.has_connections() {
+            let numbers = Parameter::all(lone_body(scene).map_err(BuildError::from)?);
             return Ok(Self::of_body(0, numbers.map_err(BuildError::from)?).collect());
         }
-        let springs = system
+        let springs = scene
             .springs
             .iter()
             .enumerate()
@@ -63,17 +63,17 @@ impl Number {
             };
             [("translation", Part::Translation), ("rotation", Part::Rotation)].into_iter().flat_map(of)
         };
-        let joints = system
+        let joints = scene
             .joints
             .iter()
             .enumerate()
             .filter(|(_, joint)| joint.spring.is_some())
             .map(|(i, _)| Self { name: format!("joints[{i}].spring.stiffness"), place: Place::Joint(i) });
-        let stiffnesses = springs.chain((0..system.bushings.len()).flat_map(of_bushing)).chain(joints);
-        let mut all: Vec<Self> = stiffnesses.filter(|stiffness| stiffness.value(system) > 0.0).collect();
-        for (body, scene) in system.bodies.iter().enumerate().filter(|(_, scene)| varies(scene)) {
-            let numbers = Parameter::all(scene).map_err(BuildError::from)?;
-            all.extend(Self::of_body(body, numbers));
+        let stiffnesses = springs.chain((0..scene.bushings.len()).flat_map(of_bushing)).chain(joints);
+        let mut all: Vec<Self> = stiffnesses.filter(|stiffness| stiffness.value(scene) > 0.0).collect();
+        for (number, body) in scene.bodies.iter().enumerate().filter(|(_, body)| varies(body)) {
+            let numbers = Parameter::all(body).map_err(BuildError::from)?;
+            all.extend(Self::of_body(number, numbers));
         }
         Ok(all)
     }
@@ -83,12 +83,12 @@ impl Number {
     }
 
     /// The numbers of some names, of one body also stretches of its mesh; all without any.
-    pub fn named(system: &System, names: &[String]) -> Result<Vec<Self>, Failure> {
-        if !system.has_connections() {
-            let numbers = Parameter::named(lone_body(system).map_err(BuildError::from)?, names);
+    pub fn named(scene: &Scene, names: &[String]) -> Result<Vec<Self>, Failure> {
+        if !scene.has_connections() {
+            let numbers = Parameter::named(lone_body(scene).map_err(BuildError::from)?, names);
             return Ok(Self::of_body(0, numbers.map_err(BuildError::from)?).collect());
         }
-        let all = Self::all(system)?;
+        let all = Self::all(scene)?;
         if names.is_empty() && !all.is_empty() {
             return Ok(all);
         }
@@ -111,39 +111,39 @@ impl Number {
     }
 
     /// Its value in a scene.
-    pub fn value(&self, system: &System) -> f64 {
+    pub fn value(&self, scene: &Scene) -> f64 {
         match &self.place {
-            Place::Spring(i) => system.springs[*i].stiffness,
+            Place::Spring(i) => scene.springs[*i].stiffness,
             Place::Bushing(i, part, axis) => {
-                let AlongAndAbout { translation, rotation } = system.bushings[*i].stiffness;
+                let AlongAndAbout { translation, rotation } = scene.bushings[*i].stiffness;
                 match part {
                     Part::Translation => translation[*axis],
                     Part::Rotation => rotation[*axis],
                 }
             }
-            Place::Joint(i) => system.joints[*i].spring.map_or(0.0, |spring| spring.stiffness),
-            Place::Body(i, parameter) => meshed(&system.bodies[*i]).map_or(f64::NAN, |body| parameter.value(body)),
+            Place::Joint(i) => scene.joints[*i].spring.map_or(0.0, |spring| spring.stiffness),
+            Place::Body(i, parameter) => meshed(&scene.bodies[*i]).map_or(f64::NAN, |body| parameter.value(body)),
         }
     }
 
     /// Gives it a value in a scene.
-    pub fn set(&self, system: &mut System, value: f64) {
+    pub fn set(&self, scene: &mut Scene, value: f64) {
         match &self.place {
-            Place::Spring(i) => system.springs[*i].stiffness = value,
+            Place::Spring(i) => scene.springs[*i].stiffness = value,
             Place::Bushing(i, part, axis) => {
-                let AlongAndAbout { translation, rotation } = &mut system.bushings[*i].stiffness;
+                let AlongAndAbout { translation, rotation } = &mut scene.bushings[*i].stiffness;
                 match part {
                     Part::Translation => translation[*axis] = value,
                     Part::Rotation => rotation[*axis] = value,
                 }
             }
             Place::Joint(i) => {
-                if let Some(spring) = &mut system.joints[*i].spring {
+                if let Some(spring) = &mut scene.joints[*i].spring {
                     spring.stiffness = value;
                 }
             }
             Place::Body(i, parameter) => {
-                if let Body::Meshed(body) = &mut system.bodies[*i].body {
+                if let BodySource::Meshed(body) = &mut scene.bodies[*i].source {
                     parameter.set(body, value);
                 }
             }
@@ -165,14 +165,14 @@ impl Number {
 }
 
 /// True of a body in joints whose modes follow from its mesh and its materials alone.
-fn varies(scene: &Scene) -> bool {
-    let Some(_) = meshed(scene) else { return false };
-    scene.tied && scene.modes.flexible.most() > 0 && scene.modes.about.is_none() && scene.modes.measured.is_none()
+fn varies(body: &Body) -> bool {
+    let Some(_) = meshed(body) else { return false };
+    body.tied && body.modes.flexible.most() > 0 && body.modes.about.is_none() && body.modes.measured.is_none()
 }
 
-fn meshed(scene: &Scene) -> Option<&MeshedBody> {
-    match &scene.body {
-        Body::Meshed(body) => Some(body),
+fn meshed(body: &Body) -> Option<&MeshedBody> {
+    match &body.source {
+        BodySource::Meshed(meshed) => Some(meshed),
         _ => None,
     }
 }
@@ -187,9 +187,9 @@ mod tests {
                     rigid = { mass = 1.0, center_of_mass = [0, 0, 0], inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]] }\n\
                     markers = { root = { at = [0, 0, 0] } }\n[[joints]]\nname = \"j\"\nkind = \"revolute\"\naxis = [0, 0, 1]\n\
                     between = [\"ground\", \"a.root\"]\n[time]\nend = 1.0\nstep = 0.1\n";
-        let system = System::parse(text, "scene.toml").unwrap();
+        let scene = Scene::parse(text, "scene.toml").unwrap();
         for names in [&[][..], &["springs[0].stiffness".to_owned()]] {
-            let told = Number::named(&system, names).unwrap_err().to_string();
+            let told = Number::named(&scene, names).unwrap_err().to_string();
             assert!(told.contains("a spring, a bushing, a joint with a spring or a body with a mesh"), "{told}");
         }
     }

@@ -5,7 +5,7 @@ use std::iter::once;
 use model::{BodyRates, Parameter, ParameterRates, VariedBody};
 use nalgebra::Vector3;
 use report::{Form, Report, Table};
-use scene::{Shared, System};
+use scene::{Scene, Shared};
 
 use super::number::Number;
 use super::responses::{self, AXES, ResponseReport};
@@ -58,9 +58,9 @@ pub(super) struct OfParameter {
 
 impl Rates {
     pub fn new(body: &VariedBody, parameters: &[Parameter], found: &BodyRates, response_frequencies: Vec<f64>) -> Self {
-        let scene = body.scene();
-        let (loads, damping) = (body.load_names(), &scene.modes.damping);
-        let points: Vec<String> = scene.output.points.keys().cloned().collect();
+        let given = body.scene();
+        let (loads, damping) = (body.load_names(), &given.modes.damping);
+        let points: Vec<String> = given.output.points.keys().cloned().collect();
         let of_parameter = |(parameter, rates): (&Parameter, &ParameterRates)| {
             let value = parameter.value(body.body());
             let of_statics = rates.statics.iter().flatten().flat_map(|of_load| match of_load {
@@ -106,15 +106,10 @@ impl Rates {
     }
 
     /// Rates of the frequencies and responses of bodies in joints.
-    pub fn of_system(
-        system: &System,
-        parameters: &[Number],
-        found: SystemRates,
-        response_frequencies: Vec<f64>,
-    ) -> Self {
+    pub fn of_system(scene: &Scene, parameters: &[Number], found: SystemRates, response_frequencies: Vec<f64>) -> Self {
         let SystemRates { frequencies, repeated, rates, responses } = found;
         let of_parameter = |((parameter, rates), of_responses): ((&Number, Vec<f64>), Vec<_>)| {
-            let value = parameter.value(system);
+            let value = parameter.value(scene);
             OfParameter {
                 name: parameter.name.clone(),
                 value,

@@ -12,7 +12,7 @@ use dynamics::SystemMode;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
 use model::{BuildError, BuildProgress, Builder, Model, Needs, Parameter, VariedBody};
-use scene::System;
+use scene::Scene;
 
 use super::damping::Damped;
 use super::here::{Here, NumbersOfBody};
@@ -31,18 +31,18 @@ pub(crate) enum Varied {
 }
 
 impl Varied {
-    pub fn new(system: &System, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
-        if system.has_connections() {
-            return Ok(Self::System(Box::new(VariedSystem::new(system, builder, progress)?)));
+    pub fn new(scene: &Scene, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
+        if scene.has_connections() {
+            return Ok(Self::System(Box::new(VariedSystem::new(scene, builder, progress)?)));
         }
-        let scene = lone_body(system).map_err(BuildError::from)?;
-        Ok(Self::Body(Box::new(builder.needing(Needs::modes()).varied(scene, progress)?)))
+        let body = lone_body(scene).map_err(BuildError::from)?;
+        Ok(Self::Body(Box::new(builder.needing(Needs::modes()).varied(body, progress)?)))
     }
 }
 
 /// A system whose numbers vary.
 pub(crate) struct VariedSystem {
-    system: System,
+    system: Scene,
     builder: Builder,
     models: Vec<Model>,
 }
@@ -57,18 +57,17 @@ pub(crate) struct SystemRates {
 
 impl VariedSystem {
     /// The bodies of a scene.
-    fn new(system: &System, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
-        let system = system.clone();
-        let models = builder.models(&system, progress)?;
-        Ok(Self { system, builder: builder.clone(), models })
+    fn new(scene: &Scene, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
+        let scene = scene.clone();
+        let models = builder.models(&scene, progress)?;
+        Ok(Self { system: scene, builder: builder.clone(), models })
     }
 
     /// Frequencies and responses with their rates of a scene with other numbers, at rest where it stands at the start.
-    pub fn rates(&self, system: &System, numbers: &[Number], frequencies: &[f64]) -> Result<SystemRates, Failure> {
-        let is_same = |i: usize| system.bodies[i].body == self.system.bodies[i].body;
-        let anew =
-            if (0..system.bodies.len()).all(is_same) { None } else { Some(self.builder.models(system, |_| ())?) };
-        let here = Here::new(system, anew.as_deref().unwrap_or(&self.models))?;
+    pub fn rates(&self, scene: &Scene, numbers: &[Number], frequencies: &[f64]) -> Result<SystemRates, Failure> {
+        let is_same = |i: usize| scene.bodies[i].source == self.system.bodies[i].source;
+        let anew = if (0..scene.bodies.len()).all(is_same) { None } else { Some(self.builder.models(scene, |_| ())?) };
+        let here = Here::new(scene, anew.as_deref().unwrap_or(&self.models))?;
         let repeated = here.repeated();
         let varied = self.varied(&here, numbers)?;
         let of_stiffness = |number: &Number| match number.place {

@@ -3,7 +3,7 @@
 use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{Island, MotionState, Reached, StepError};
 use model::Model;
-use scene::System;
+use scene::Scene;
 
 use crate::motion::{self, StartSettings};
 
@@ -13,18 +13,18 @@ const STEPS: u64 = 1000;
 const MOVES: f64 = 1e-3;
 
 /// The state of each body at a time of the scene's run.
-pub(super) fn states_at(system: &System, models: &[Model], time: f64) -> Result<Vec<MotionState>, Failure> {
-    let end = system.time.end;
+pub(super) fn states_at(scene: &Scene, models: &[Model], time: f64) -> Result<Vec<MotionState>, Failure> {
+    let end = scene.time.end;
     if !(time.is_finite() && (0.0..=end).contains(&time)) {
         let expected = format!("0 to {end}, the end of the run");
-        let wrong = Kind::Usage.of(&system.path).found(time.to_string()).expected(&expected);
+        let wrong = Kind::Usage.of(&scene.path).found(time.to_string()).expected(&expected);
         return Err(wrong.says(format!("time {time}: expected {expected}")));
     }
     let references: Vec<&Model> = models.iter().collect();
-    let beginning = StartSettings::of(system, &references);
+    let beginning = StartSettings::of(scene, &references);
     let mut states: Vec<Option<MotionState>> = vec![None; models.len()];
-    let failed = |source: StepError| source.in_file(&system.path);
-    let mut run = motion::begin(system, &references, &beginning)?;
+    let failed = |source: StepError| source.in_file(&scene.path);
+    let mut run = motion::begin(scene, &references, &beginning)?;
     run.set_stop_time(Some(time));
     while run.time() < time {
         if let Reached::Stop | Reached::End = run.advance(STEPS, |_, _| ()).map_err(|of| failed(of.source))? {

@@ -4,7 +4,7 @@ use diagnostic::{Failure, Kind};
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
 use nalgebra::Vector3;
-use scene::{Load, Scene, Shared};
+use scene::{Body, Load, Shared};
 
 use super::settings::LinearSettings;
 use crate::commands::linear::names::{STRESS, is_asked};
@@ -67,23 +67,23 @@ pub(super) fn unit_of_coordinate(scene: &Shared) -> String {
 
 /// The loads of a model, with their numbers in the scene.
 pub(in crate::commands::linear) fn acting_loads<'a>(
-    scene: &'a Scene,
+    body: &'a Body,
     model: &Model,
 ) -> impl Iterator<Item = (usize, &'a Load)> {
     // Gravity that the scene does not call for is not among them.
-    let all = scene.loads.len() == model.loads().len();
-    scene.loads.iter().enumerate().filter(move |(_, load)| all || !load.is_gravity())
+    let all = body.loads.len() == model.loads().len();
+    body.loads.iter().enumerate().filter(move |(_, load)| all || !load.is_gravity())
 }
 
 /// The acceleration of the support, global axes, that each load that acts stands for where its history is 1: zero of most.
-pub(super) fn base_accelerations(scene: &Scene, model: &Model) -> Vec<Vector3<f64>> {
-    acting_loads(scene, model).map(|(_, load)| load.base_acceleration().into()).collect()
+pub(super) fn base_accelerations(body: &Body, model: &Model) -> Vec<Vector3<f64>> {
+    acting_loads(body, model).map(|(_, load)| load.base_acceleration().into()).collect()
 }
 
 /// An input for each load that acts: its factor, so that 1 is the load as the scene has it where its history is 1.
-pub(in crate::commands::linear) fn input_channels(scene: &Scene, model: &Model, prefix: &str) -> Vec<Channel> {
+pub(in crate::commands::linear) fn input_channels(body: &Body, model: &Model, prefix: &str) -> Vec<Channel> {
     let names: Vec<String> =
-        acting_loads(scene, model).map(|(i, load)| format!("{prefix}loads[{i}].{}", load.kind.name())).collect();
+        acting_loads(body, model).map(|(i, load)| format!("{prefix}loads[{i}].{}", load.kind.name())).collect();
     (0..model.loads().len())
         .map(|k| Channel::new(names.get(k).cloned().unwrap_or_else(|| format!("{prefix}load{k}")), "factor"))
         .collect()

@@ -10,7 +10,7 @@ use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
 use nalgebra::Vector3;
-use scene::Scene;
+use scene::Body;
 
 use super::channels::{
     Channels, base_accelerations, input_channels, point_outputs, relative_outputs, stress_outputs, unit_of_coordinate,
@@ -35,16 +35,16 @@ enum Moved {
 
 /// The equations about rest under the loads of a time, or about the spin of a drive then.
 pub(super) fn of_held(
-    scene: &Scene,
+    body: &Body,
     model: &Model,
     (initial, time): (&Initial, f64),
     settings: &LinearSettings,
 ) -> Result<(Channels, State), Failure> {
-    let refuse = |found: &str, help: &str| Err(Kind::Refused.of(&scene.path).help(help).says(found));
+    let refuse = |found: &str, help: &str| Err(Kind::Refused.of(&body.path).help(help).says(found));
     if model.physics.large_deflection.is_some() {
         return refuse("a body with large modes", "give `large_deflection = false` in [effects]");
     }
-    let failed = |source: LoadedError| source.in_file(&scene.path);
+    let failed = |source: LoadedError| source.in_file(&body.path);
     let rest = model.at_rest(initial, time).map_err(failed)?;
     let AtRest { unit_forces, modal_displacement, .. } = &rest;
     // Rigid motions that are left: none of a drive, which is given.
@@ -75,20 +75,20 @@ pub(super) fn of_held(
             of_rigid.chain(unit[6..].iter().copied()).chain(std::iter::repeat_n(0.0, d)).collect()
         })
         .collect();
-    let mut inputs = input_channels(scene, model, "");
+    let mut inputs = input_channels(body, model, "");
     let usual_inputs = inputs.len();
     // Accelerations that an input gives all of the support, along the axes of the body: the first of a load that stands for them.
-    let base = base_channels(scene);
+    let base = base_channels(body);
     let in_spin = drive.is_some_and(|driven| driven.is_spin());
     let by_loads: Vec<Vector3<f64>> = match in_spin {
         // Outputs in a spin are as seen from the body.
         true => vec![Vector3::zeros(); usual_inputs],
-        false => base_accelerations(scene, model).iter().map(|global| initial.attitude.to_body(global)).collect(),
+        false => base_accelerations(body, model).iter().map(|global| initial.attitude.to_body(global)).collect(),
     };
     let shakes = |asked: &String| base.iter().any(|channel| is_asked(&channel.name, asked));
     let has_base = by_loads.iter().any(|of_load| *of_load != Vector3::zeros()) || settings.inputs.iter().any(shakes);
     let names = (1..=r).map(|k| format!("rigid{k}")).chain((1..=nf).map(|k| format!("mode{k}")));
-    let unit = unit_of_coordinate(scene);
+    let unit = unit_of_coordinate(body);
     let mut coordinates: Vec<Channel> = names.map(|name| Channel::new(name, unit.clone())).collect();
     let (stiffness, mut damping) = (of_modes(&rest.stiffness), of_modes(&rest.damping));
     let (mut outputs, mut relative) = (Vec::new(), Vec::new());
@@ -97,9 +97,9 @@ pub(super) fn of_held(
         let numbers = rigid.iter().map(|motion| motion.number).chain(6..6 + nf);
         let shapes = numbers.map(|k| point.columns()[k]).chain(std::iter::repeat_n(Vector3::zeros(), d));
         let shapes: Vec<Vector3<f64>> = shapes.collect();
-        outputs.extend(point_outputs(scene, name, &shapes));
+        outputs.extend(point_outputs(body, name, &shapes));
         if has_base && !in_spin {
-            relative.extend(relative_outputs(scene, name, &shapes));
+            relative.extend(relative_outputs(body, name, &shapes));
         }
         arms.push(model.arm(point, modal_displacement));
     }
@@ -110,7 +110,7 @@ pub(super) fn of_held(
             let zeros = |count| std::iter::repeat_n(0.0, count);
             zeros(r).chain(row[..nf].iter().copied()).chain(zeros(d)).collect()
         };
-        outputs.extend(stress_outputs(scene, name, materials, over));
+        outputs.extend(stress_outputs(body, name, materials, over));
     }
     let usual_outputs = outputs.len();
     let first_relative = outputs.len();
@@ -138,14 +138,14 @@ pub(super) fn of_held(
             columns.push((0..n).map(|k| if k < nf { -of_drive(mass, 6 + k) } else { 1.0 }).collect());
             direct.push(std::array::from_fn(|i| of_drive(mass, i)));
             accelerations.push(Moved::Driven);
-            let [input, coordinate] = driven.channels(scene);
+            let [input, coordinate] = driven.channels(body);
             inputs.push(input);
             let mut row = vec![0.0; n];
             row[nf] = 1.0;
             outputs.push(Output::new(coordinate.clone(), Rate::Place, row));
             coordinates.push(coordinate);
         }
-        for (i, channel) in wrench_channels(scene, "reaction").into_iter().enumerate() {
+        for (i, channel) in wrench_channels(body, "reaction").into_iter().enumerate() {
             let row = |matrix: &Mat<f64>, of_drive: f64| -> Vec<f64> {
                 (0..n).map(|k| if k < nf { matrix[(i, 6 + k)] } else { of_drive }).collect()
             };

@@ -6,7 +6,7 @@ use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
 use nalgebra::Vector3;
-use scene::System;
+use scene::Scene;
 
 use super::channels::{Channels, input_channels, point_outputs, stress_outputs, unit_of_coordinate, wrench_channels};
 use super::settings::LinearSettings;
@@ -23,29 +23,29 @@ const ROUNDING: f64 = 1e-12;
 
 /// The equations, with the state that they are about.
 pub(super) fn of_system(
-    system: &System,
+    scene: &Scene,
     models: &[Model],
     spin: Option<Vector3<f64>>,
     states: Option<&[MotionState]>,
     settings: &LinearSettings,
 ) -> Result<(Channels, State), Failure> {
     let references: Vec<&Model> = models.iter().collect();
-    let no_body = || Kind::Refused.of(&system.path).help("name a body in the scene").says("no body");
-    let beginning = StartSettings { together: true, ..StartSettings::of(system, &references) };
-    let mut run = motion::begin(system, &references, &beginning)?;
+    let no_body = || Kind::Refused.of(&scene.path).help("name a body in the scene").says("no body");
+    let beginning = StartSettings { together: true, ..StartSettings::of(scene, &references) };
+    let mut run = motion::begin(scene, &references, &beginning)?;
     let Some(Island { motion, joints, bodies, .. }) = run.islands_mut().first_mut() else { return Err(no_body()) };
     if let Some(states) = states {
         let states: Vec<MotionState> = bodies.iter().map(|body| states[*body].clone()).collect();
-        motion.set_states(&states).map_err(|source| source.in_file(&system.path))?;
+        motion.set_states(&states).map_err(|source| source.in_file(&scene.path))?;
     }
     let motion = motion.system_motion().ok_or_else(no_body)?;
-    let failed = |source: SteadyError| source.in_file(&system.path);
+    let failed = |source: SteadyError| source.in_file(&scene.path);
     let SystemSpin { omega_global, steady, rotors, warnings: turning } =
         SystemSpin::new(motion, spin).map_err(failed)?;
     let (linear, _) = steady.linear.with_loose_apart().map_err(failed)?;
     let joint_drives: Vec<usize> = (0..joints.len())
         .filter(|joint| {
-            let name = drive_input(&system.joints[joints[*joint]].name);
+            let name = drive_input(&scene.joints[joints[*joint]].name);
             motion.system().joints()[*joint].drive.is_some()
                 && settings.inputs.iter().any(|asked| is_asked(&name, asked))
         })
@@ -62,16 +62,16 @@ pub(super) fn of_system(
     let mut outputs = Vec::new();
     let mut stresses = Vec::new();
     for (number, (model, state)) in models.iter().zip(steady.states()).enumerate() {
-        let scene = &system.bodies[number];
+        let given = &scene.bodies[number];
         let own = linear.coordinates_of(number);
-        let name = scene.name.as_ref().filter(|_| models.len() > 1);
+        let name = given.name.as_ref().filter(|_| models.len() > 1);
         let prefix = name.map_or_else(String::new, |name| format!("{name}."));
         for unit in motion.system().bodies()[number].unit_forces(&state) {
             let mut column = vec![0.0; all];
             column[own.clone()].copy_from_slice(&unit);
             columns.push(column);
         }
-        inputs.extend(input_channels(scene, model, &prefix));
+        inputs.extend(input_channels(given, model, &prefix));
         let slopes = model.coordinate_slopes(&state.modal_displacement);
         for (name, point) in &model.points {
             let arm = model.arm(point, &state.modal_displacement);
@@ -89,7 +89,7 @@ pub(super) fn of_system(
                 of_body.iter().enumerate().map(|(k, column)| column * basis[(own.start + k, j)]).sum()
             };
             let columns: Vec<Vector3<f64>> = (0..n).map(of_coordinate).collect();
-            outputs.extend(point_outputs(scene, &format!("{prefix}{name}"), &columns));
+            outputs.extend(point_outputs(given, &format!("{prefix}{name}"), &columns));
         }
         let of_stress = model.stress.as_ref().map_or(&[][..], |stress| stress.of_points());
         for ((name, _), materials) in model.points.iter().zip(of_stress) {
@@ -102,12 +102,12 @@ pub(super) fn of_system(
                 });
                 over(&whole)
             };
-            stresses.extend(stress_outputs(scene, &format!("{prefix}{name}"), materials, of_body));
+            stresses.extend(stress_outputs(given, &format!("{prefix}{name}"), materials, of_body));
         }
     }
-    let units: UnitLabels = (&system.units).into();
+    let units: UnitLabels = (&scene.units).into();
     for (number, joint) in joints.iter().enumerate() {
-        let of = &system.joints[*joint];
+        let of = &scene.joints[*joint];
         for coordinate in of.kind.coordinates() {
             let quantity = coordinate.name();
             let [force, unit] = match coordinate {
@@ -119,7 +119,7 @@ pub(super) fn of_system(
             inputs.push(Channel::new(format!("{}.{quantity}", of.name), force));
             columns.push(row);
             for (rate, suffix, unit) in
-                [(Rate::Place, "", unit.clone()), (Rate::Velocity, ".rate", format!("{unit}/{}", system.units.time))]
+                [(Rate::Place, "", unit.clone()), (Rate::Velocity, ".rate", format!("{unit}/{}", scene.units.time))]
             {
                 let channel = Channel::new(format!("{}.{quantity}{suffix}", of.name), unit);
                 outputs.push(Output::new(channel, rate, of_coordinates.clone()));
@@ -132,7 +132,7 @@ pub(super) fn of_system(
     for (number, joint) in joints.iter().enumerate() {
         let of = motion.reaction_rows(&steady, number);
         let times = |matrix: &Mat<f64>, i: usize| over(&(0..all).map(|k| matrix[(i, k)]).collect::<Vec<f64>>());
-        for (i, channel) in wrench_channels(system, &system.joints[*joint].name).into_iter().enumerate() {
+        for (i, channel) in wrench_channels(scene, &scene.joints[*joint].name).into_iter().enumerate() {
             let of_input = columns.iter().map(|force| (0..all).map(|k| of.by_force[(i, k)] * force[k]).sum());
             // The part of accelerations of independent coordinates is rounding.
             let of_drives = times(&of.by_acceleration, i).split_off(free);
@@ -160,16 +160,16 @@ pub(super) fn of_system(
         Some(drive) if i == free + drive => 1.0,
         _ => 0.0,
     });
-    let unit = unit_of_coordinate(system);
+    let unit = unit_of_coordinate(scene);
     let mut coordinates: Vec<Channel> = (1..=free).map(|k| Channel::new(format!("x{k}"), unit.clone())).collect();
     let mut more_inputs = Vec::new();
     for (number, joint) in joints.iter().enumerate() {
-        let (name, of) = (&system.joints[*joint].name, &motion.system().joints()[number]);
+        let (name, of) = (&scene.joints[*joint].name, &motion.system().joints()[number]);
         let Some(quantity) = of.rows.iter().find_map(driven_unit) else { continue };
         let unit = if quantity == "turn" { "rad" } else { units.length };
         match joint_drives.iter().position(|driven| *driven == number) {
             Some(drive) => {
-                inputs.push(Channel::new(drive_input(name), format!("{unit}/{}²", system.units.time)));
+                inputs.push(Channel::new(drive_input(name), format!("{unit}/{}²", scene.units.time)));
                 coordinates.push(Channel::new(format!("{name}.drive"), unit));
                 let mut row = vec![0.0; n];
                 row[free + drive] = 1.0;
@@ -184,7 +184,7 @@ pub(super) fn of_system(
     let state = State {
         time: motion.time(),
         omega_global: omega_global.into(),
-        rotors: rotors.iter().map(|rotor| rotor.words(&system.units.time)).collect(),
+        rotors: rotors.iter().map(|rotor| rotor.words(&scene.units.time)).collect(),
         rigid: linear.rigid,
         damping: damping_in_words(models),
         warnings,

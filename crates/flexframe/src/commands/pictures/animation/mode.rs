@@ -7,7 +7,7 @@ use diagnostic::{Failure, Kind};
 use figures::{Animation, FilmFrame};
 use model::{Builder, Needs};
 use nalgebra::Vector3;
-use scene::{Shared, System};
+use scene::{Scene, Shared};
 
 use super::film::Format;
 use super::settings::{AnimationSettings, Coloured, MAX_FRAMES};
@@ -26,7 +26,7 @@ const DRAWN: f64 = 0.08;
 /// # Errors
 /// [`Failure`].
 pub fn animate_mode(
-    system: &System,
+    system: &Scene,
     builder: &Builder,
     number: usize,
     path: &Path,

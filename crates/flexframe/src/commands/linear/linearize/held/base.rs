@@ -2,7 +2,7 @@
 
 use linear::Channel;
 use nalgebra::Vector3;
-use scene::Scene;
+use scene::Body;
 
 use crate::commands::linear::linearize::channels::along_axes;
 use crate::rows::units::UnitLabels;
@@ -11,8 +11,8 @@ use crate::rows::units::UnitLabels;
 pub(super) const TRANSLATIONS: usize = 3;
 
 /// The motions of a base: translations along the axes of the body, then turns about them through its origin.
-pub(super) fn base_channels(scene: &Scene) -> Vec<Channel> {
-    let UnitLabels { length, time, .. } = (&scene.units).into();
+pub(super) fn base_channels(body: &Body) -> Vec<Channel> {
+    let UnitLabels { length, time, .. } = (&body.units).into();
     let translations = along_axes("base.acceleration", &format!("{length}/{time}²"));
     translations.into_iter().chain(along_axes("base.angular_acceleration", &format!("rad/{time}²"))).collect()
 }

@@ -4,7 +4,7 @@ use dynamics::DrivenMotion;
 use linear::Channel;
 use model::Model;
 use nalgebra::Vector3;
-use scene::Scene;
+use scene::Body;
 
 use crate::rows::units::UnitLabels;
 
@@ -29,7 +29,7 @@ impl Driven {
     }
 
     /// The input, and the coordinate that it accelerates.
-    pub fn channels(&self, scene: &Scene) -> [Channel; 2] {
+    pub fn channels(&self, scene: &Body) -> [Channel; 2] {
         let UnitLabels { length, time, .. } = (&scene.units).into();
         let (unit, name) = match self.motion {
             DrivenMotion::Turn { .. } => ("rad", "drive.angle"),
