@@ -73,11 +73,8 @@ pub trait Load: fmt::Debug + Send + Sync + Any {
         0
     }
 
-    /// The key with the data of the load, by which a checkpoint knows it: the same in every process. By default with what
-    /// [`fmt::Debug`] prints.
-    fn key(&self, key: Key) -> Key {
-        key.of("load", 1).with("debug", &*format!("{self:?}"))
-    }
+    /// The key with the name of the law and all its numbers, by which a checkpoint knows the load: the same in every process.
+    fn key(&self, key: Key) -> Key;
 
     /// Refuses numbers that are not finite, and shapes of another body than one with `flexible` modes.
     ///

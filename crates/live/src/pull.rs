@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use dynamics::nalgebra::Vector3;
-use dynamics::{Applied, Kinematics, Load, PointShapes, Signal};
+use dynamics::{Applied, Key, Kinematics, Load, PointShapes, Signal};
 
 /// A spring from a point of the body to a place in space, with a damper on the velocity of the point. Copies share the place.
 #[derive(Debug, Clone)]
@@ -46,5 +46,10 @@ impl Load for Pull {
         let (position, velocity) = (motion.position_global(&self.point), motion.velocity_global(&self.point));
         let force_global = self.force_global(motion.time, position, velocity);
         applied.force(&self.point, &(motion.body_from_global * force_global));
+    }
+
+    fn key(&self, key: Key) -> Key {
+        // Who moves the place keeps it.
+        key.of("pull", 1).with("point", &*self.point).with("stiffness", &self.stiffness).with("damping", &self.damping)
     }
 }

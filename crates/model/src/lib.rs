@@ -37,7 +37,7 @@ mod support;
 mod tie;
 
 pub use body::files::files_of_body;
-pub use building::assembly::Assembly;
+pub use building::assembly::{Assembly, AssemblyInput};
 pub use building::builder::Builder;
 pub use building::progress::{BuildProgress, BuildTimes, BuildWork};
 pub use building::variants::Variants;

@@ -53,7 +53,7 @@ impl Body {
     pub(crate) fn of_scene(&self, py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
         let of = scene.get().scene(py)?.clone();
         let needs = Needs::default();
-        if Assembly::made_of(&of, &needs) != Assembly::made_of(self.scene_of(), &needs) {
+        if Assembly::input(&of, &needs) != Assembly::input(self.scene_of(), &needs) {
             let expected = "one with the same [body], constraints and modes.flexible";
             let help = "make another body: Simulation(Body(scene))";
             return Err(wrong_input(py, "scene", "a scene of another body", expected, help));

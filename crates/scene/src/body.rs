@@ -11,7 +11,7 @@ pub(crate) mod modes;
 
 use std::collections::BTreeMap;
 use std::ops::{Deref, DerefMut};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use dynamics::Method;
@@ -95,6 +95,15 @@ pub enum BodySource {
 }
 
 impl BodySource {
+    /// The files that it names.
+    pub fn files(&self) -> Vec<&Path> {
+        match self {
+            Self::Meshed(MeshedBody { mesh: file, .. }) | Self::File(FileBody { file, .. }) => vec![file],
+            Self::Matrices(matrices) => matrices.list().map(|(_, file)| file).collect(),
+            Self::Rigid(_) => Vec::new(),
+        }
+    }
+
     /// True if its elements are known, and with them stress and its consequences.
     pub fn has_elements(&self) -> bool {
         matches!(self, Self::Meshed(_) | Self::File(_))

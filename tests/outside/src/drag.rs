@@ -1,6 +1,6 @@
 //! An own load: air that brakes a point, −c v.
 
-use dynamics::{Applied, Kinematics, Load, PointShapes};
+use dynamics::{Applied, Key, Kinematics, Load, PointShapes};
 
 /// The drag.
 #[derive(Debug)]
@@ -10,6 +10,10 @@ impl Load for Drag {
     fn apply(&self, motion: &Kinematics, applied: &mut Applied) {
         let velocity_body = motion.body_from_global * motion.velocity_global(&self.0);
         applied.force(&self.0, &(velocity_body * -self.1));
+    }
+
+    fn key(&self, key: Key) -> Key {
+        key.of("drag", 1).with("point", &self.0).with("coefficient", &self.1)
     }
 }
 

@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use dynamics::{
-    Applied, Expression, History, Kinematics, Load, LoadFn, PointForce, Reached, Rows, SharedLoad, Signal, StepControl,
-    Table,
+    Applied, Expression, History, Key, Kinematics, Load, LoadFn, PointForce, Reached, Rows, SharedLoad, Signal,
+    StepControl, Table,
 };
 use nalgebra::Vector3;
 
@@ -82,6 +82,10 @@ impl Load for Counted {
     fn apply(&self, motion: &Kinematics, applied: &mut Applied) {
         self.count.fetch_add(1, Ordering::Relaxed);
         self.force.apply(motion, applied);
+    }
+
+    fn key(&self, key: Key) -> Key {
+        self.force.key(key)
     }
 
     fn is_same(&self, time: f64, branch_times: [f64; 2]) -> bool {

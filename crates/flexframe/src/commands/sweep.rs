@@ -18,9 +18,9 @@ use std::time::{Duration, Instant};
 
 use diagnostic::{Failure, Kind};
 use keys::Hash;
-use model::{Assembly, BuildError, BuildProgress, Builder, Model, Needs, Variants};
+use model::{Assembly, AssemblyInput, BuildError, BuildProgress, Builder, Model, Needs, Variants};
 use results::{ColumnTable, Results};
-use scene::{Body, BodySource, Scene};
+use scene::{Body, Scene};
 use serde::Serialize;
 use whole_file::{FileLock, TemporaryFolder, cure_of_temporaries};
 
@@ -173,21 +173,24 @@ pub fn sweep(
     }
     let [kept, _] = table.counts();
     let mine = (0..plan.rows.len()).filter(|row| is_mine(*row)).count();
-    let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    // Rows that share the assemblies of all bodies.
+    let mut groups: Vec<(Vec<AssemblyInput<'_>>, Vec<usize>)> = Vec::new();
     for (i, row) in plan.rows.iter().enumerate() {
         match row {
             _ if table.rows[i] != RowState::Open || !is_mine(i) => {}
             Ok(system) => {
-                let made_of: Vec<String> =
-                    system.bodies.iter().map(|body| Assembly::made_of(body, &builder.needs)).collect();
-                groups.entry(made_of.join("\n")).or_default().push(i);
+                let inputs = scene.bodies.iter().map(|body| Assembly::input(body, &builder.needs)).collect();
+                match groups.iter_mut().rev().find(|(of_group, _)| *of_group == inputs) {
+                    Some((_, rows)) => rows.push(i),
+                    None => groups.push((inputs, vec![i])),
+                }
             }
             Err(words) => table.rows[i] = RowState::Failed(words.clone()),
         }
     }
     table.write(output, &plan, false)?;
     let mut written = Instant::now();
-    for rows in groups.values() {
+    for (_, rows) in &groups {
         let Some(Ok(first)) = rows.first().map(|row| &plan.rows[*row]) else { continue };
         let mut all_failed =
             |words: &str| rows.iter().for_each(|row| table.rows[*row] = RowState::Failed(words.to_owned()));
@@ -310,11 +313,10 @@ const CHANGED: &str = "a file of the body was changed while the sweep ran\n = ru
 /// Files that a sweep may not write over: all that it reads.
 fn outputs(plan: &Plan, sweep: &Path, builder: &Builder, overwrite: bool) -> Outputs {
     // Rows with the same bodies and tables have the same files.
-    let same = |scene: &Scene| {
-        let bodies: Vec<&BodySource> = scene.bodies.iter().map(|body| &body.source).collect();
-        (scene.files(), format!("{bodies:?}"))
+    let named = |scene: &Scene| -> (Vec<PathBuf>, Vec<PathBuf>) {
+        (scene.files(), scene.bodies.iter().flat_map(|body| body.source.files()).map(Path::to_owned).collect())
     };
-    let systems: BTreeMap<_, &Scene> = plan.rows.iter().flatten().map(|scene| (same(scene), scene)).collect();
+    let systems: BTreeMap<_, &Scene> = plan.rows.iter().flatten().map(|scene| (named(scene), scene)).collect();
     let files = systems.into_values().flat_map(|scene| builder.files(scene));
     Outputs::new(std::iter::once(sweep.to_owned()).chain(files).collect(), overwrite)
 }

@@ -2,7 +2,7 @@
 
 use keys::{Digest, Hash, Key};
 use model::files_of_body;
-use scene::{Body, BodySource, Scene};
+use scene::{Body, BodySource, Measured, MeasuredMode, Scene};
 
 /// A number for what the files hold that a system names: all tables as they were read, and the files that the bodies are read from,
 /// whose hash `contents_of` knows. The names of the files do not count: a run goes on from another folder.
@@ -20,9 +20,18 @@ pub fn identity_of_row(scene: &Scene, contents_of: impl FnMut(&Body) -> Hash) ->
 fn with_files(key: Key, scene: &Scene, contents_of: impl FnMut(&Body) -> Hash) -> Key {
     let key = scene.tables().fold(key, |key, table| key.with("table", table.points.as_flattened()));
     let measured = scene.bodies.iter().filter_map(|body| body.modes.measured.as_ref());
-    let measured = measured.map(|measured| format!("{:?} {:?}", measured.places, measured.modes));
-    let key = measured.fold(key, |key, measured| key.with("measured", measured.as_str()));
+    let key = measured.fold(key, with_measured);
     scene.bodies.iter().map(contents_of).fold(key, |key, contents| key.with("body", &contents))
+}
+
+/// With measured modes as they were read.
+fn with_measured(key: Key, Measured { file: _, places, modes }: &Measured) -> Key {
+    let key = key.of("measured modes", 1).with("places", &places.len());
+    let key = places.iter().fold(key, |key, (point, axis)| key.with("point", point.as_str()).with("axis", axis));
+    modes.iter().fold(key, |key, MeasuredMode { line, frequency, deviation, damping_ratio, shape }| {
+        let key = key.with("line", line).with("frequency", frequency).with("deviation", deviation);
+        key.with("damping ratio", damping_ratio).with("shape", shape)
+    })
 }
 
 fn number(key: Key) -> u64 {

@@ -1,10 +1,10 @@
 //! The files that a body is read from.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use mesh_import::files_of_mesh;
-use scene::{BodySource, FileBody, Scene};
+use scene::{BodySource, Scene};
 use slepc::Slepc;
 
 use crate::building::builder::Builder;
@@ -24,9 +24,9 @@ impl Builder {
 /// The files of a body, and what a mesh or geometry may include.
 pub fn files_of_body(body: &BodySource) -> Vec<PathBuf> {
     match body {
-        BodySource::File(FileBody { file, .. }) => vec![file.clone()],
         BodySource::Meshed(body) => files_of_mesh(&body.mesh),
-        BodySource::Matrices(matrices) => matrices.list().map(|(_, path)| path.to_owned()).collect(),
-        BodySource::Rigid(_) => Vec::new(),
+        BodySource::File(_) | BodySource::Matrices(_) | BodySource::Rigid(_) => {
+            body.files().into_iter().map(Path::to_owned).collect()
+        }
     }
 }

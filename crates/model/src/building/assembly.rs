@@ -9,7 +9,7 @@ use fem_tet10::{Materials, Matrices, Mesh};
 use matrix_import::MatrixFiles;
 use mesh_import::Imported;
 use modal::{ModalError, Solver, Support};
-use scene::{Body, BodySource, Constraint, MeshedBody, RigidBody};
+use scene::{About, Body, BodySource, Choice, Constraint, Flexible, Initial, Load, MeshedBody, RigidBody};
 
 use crate::body::given::read_body_file;
 use crate::building::builder::Builder;
@@ -32,6 +32,18 @@ pub struct Assembly(pub(crate) Assembled);
 pub(crate) enum Assembled {
     Meshed(Box<AssembledMesh>),
     Rigid(RigidBody),
+}
+
+/// The data of a scene that an [`Assembly`] follows from: scenes with equal data may share it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AssemblyInput<'a> {
+    source: &'a BodySource,
+    constraint: Option<&'a Constraint>,
+    flexible: Flexible,
+    flexibility: Choice,
+    initial: Option<&'a Initial>,
+    /// With the loads, the attitude at the start and the end of the run.
+    about: Option<(About, &'a [Load], Option<[f64; 4]>, f64)>,
 }
 
 /// Source of the matrices of a body.
@@ -158,20 +170,20 @@ impl Builder {
 }
 
 impl Assembly {
-    /// All that the assembly of a scene is made of with these needs, as a text: scenes with the same may share it.
-    pub fn made_of(body: &Body, needs: &Needs) -> String {
-        let body = Needed::new(body, needs);
-        let flexibility = body.effects.choices[Effect::Flexibility];
-        // Such a support is checked against what the scene begins with.
-        let initial = matches!(body.reduced_constraint(), Some(Constraint::Support { .. })).then_some(&body.initial);
-        // So is the rest that modes are about.
-        let about = body.modes.about.map(|about| (about, &body.loads, body.initial.attitude, body.time.end));
-        format!(
-            "{:?} {:?} {:?} {flexibility:?} {initial:?} {about:?}",
-            body.source,
-            body.reduced_constraint(),
-            body.modes.flexible
-        )
+    /// The data that the assembly of a body follows from with these needs.
+    pub fn input<'a>(body: &'a Body, needs: &Needs) -> AssemblyInput<'a> {
+        let Needed { modes, effects, loads, .. } = Needed::new(body, needs);
+        let constraint = body.reduced_constraint();
+        AssemblyInput {
+            source: &body.source,
+            constraint,
+            flexible: modes.flexible,
+            flexibility: effects.choices[Effect::Flexibility],
+            // Such a support is checked against the state that the body begins with.
+            initial: matches!(constraint, Some(Constraint::Support { .. })).then_some(&body.initial),
+            // So is the rest that modes are about.
+            about: modes.about.map(|about| (about, loads, body.initial.attitude, body.time.end)),
+        }
     }
 
     /// The same without the matrices, which are assembled again where they are needed, for who keeps it for long.

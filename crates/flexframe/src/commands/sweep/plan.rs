@@ -247,11 +247,12 @@ fn check_bodies(scene: &Scene, results: &BTreeMap<String, Asked>) -> Result<(), 
 /// Hash for each row.
 fn identities(rows: &[Result<Scene, String>]) -> Vec<u64> {
     // The files of each body are read once.
-    let mut bodies: BTreeMap<String, Hash> = BTreeMap::new();
-    let mut contents_of =
-        |body: &Body| *bodies.entry(format!("{:?}", body.source)).or_insert_with(|| contents(&body.source));
-    let of_row =
-        |row: &Result<Scene, String>| row.as_ref().map_or(0, |system| identity_of_row(system, &mut contents_of));
+    let mut bodies: BTreeMap<Vec<PathBuf>, Hash> = BTreeMap::new();
+    let mut contents_of = |body: &Body| {
+        let files = body.source.files().into_iter().map(Path::to_owned).collect();
+        *bodies.entry(files).or_insert_with(|| contents(&body.source))
+    };
+    let of_row = |row: &Result<Scene, String>| row.as_ref().map_or(0, |scene| identity_of_row(scene, &mut contents_of));
     rows.iter().map(of_row).collect()
 }
 
@@ -308,7 +309,7 @@ mod tests {
             title = "a"
             units = { length = "m", mass = "kg", time = "s" }
             body = { mesh = "part.geo", material = { young_modulus = 1e9, poisson_ratio = 0.3, density = 1e3 } }
-            modes = { flexible = 1 }
+            modes = { flexible = 1, measured = "modes.csv" }
             time = { end = 1.0, step = 0.1 }
             [[loads]]
             kind = "gravity"
@@ -321,6 +322,7 @@ mod tests {
             ("part.geo", "Include \"size.geo\";"),
             ("size.geo", "h = 1;"),
             ("table.csv", "0, 0\n1, 1\n"),
+            ("modes.csv", "frequency, damping\n10, 0.01\n"),
             (
                 "sweep.toml",
                 "scene = \"scene.toml\"\nparameters = { title = [\"a\", \"b\"] }\nresults = { a = { final = \"time\" } }",
@@ -331,14 +333,19 @@ mod tests {
         let plan = || Plan::read(&at("sweep.toml")).unwrap();
         let first = plan();
         assert!(first.identities[0] != first.identities[1] && !first.has_changed(0));
-        for (name, text) in
-            [("part.geo", "Include \"size.geo\"; "), ("size.geo", "h = 2;"), ("table.csv", "0, 0\n1, 2\n")]
-        {
+        for (name, text) in [
+            ("part.geo", "Include \"size.geo\"; "),
+            ("size.geo", "h = 2;"),
+            ("table.csv", "0, 0\n1, 2\n"),
+            ("modes.csv", "frequency, damping\n11, 0.01\n"),
+            ("modes.csv", "frequency, damping\n10, 0.02\n"),
+            ("modes.csv", "frequency\n10\n"),
+        ] {
             write((name, text));
             let now = plan();
             assert!(now.identities[0] != first.identities[0], "{name}");
             assert!(now.identity == first.identity);
-            assert_eq!(first.has_changed(0), name != "table.csv");
+            assert_eq!(first.has_changed(0), name.starts_with("part") || name.starts_with("size"));
             files.into_iter().for_each(write);
             assert_eq!(plan().identities, first.identities);
         }

@@ -2,7 +2,7 @@
 
 use modal::Progress;
 use model::{Assembly, BuildProgress, Builder, Cache, ModeCount, Needs};
-use scene::{Choice, Effect};
+use scene::{Body, Choice, Effect, RigidBody, Scene};
 
 use super::cache::{FORCE, built_by};
 use crate::{CLAMPED, bar, observations};
@@ -58,14 +58,25 @@ fn commands_with_other_needs_of_one_scene_share_what_is_the_same_and_nothing_els
         Needs { static_correction: Some(false), ..Needs::default() },
     ];
     let folder = tempfile::tempdir().unwrap();
-    let made_of = needs.each_ref().map(|needs| Assembly::made_of(&scene, needs));
+    let inputs = needs.each_ref().map(|needs| Assembly::input(&scene, needs));
     for needs in &needs {
         let (direct, _) = built_by(&Builder::default().needing(needs.clone()), &scene);
         let cache = Cache::new(folder.path(), 1 << 30);
         assert!(built_by(&Builder::with_cache(cache).needing(needs.clone()), &scene).0 == direct, "{needs:?}");
     }
     // An assembly knows how many modes there are to be, and the rest that they are about.
-    let [run, without_rows, external, modes, spin, fewer, plain] = &made_of;
+    let [run, without_rows, external, modes, spin, fewer, plain] = &inputs;
     assert!([without_rows, external, modes, plain].iter().all(|other| *other == run));
     assert!(spin != run && fewer != run && spin != fewer);
+    // A scene with other data of the same assembly shares it; another body, support or rest does not.
+    let same = |change: &dyn Fn(&mut Scene)| {
+        let mut other = scene.clone();
+        change(&mut other);
+        Assembly::input(&other, &needs[0]) == *run
+    };
+    assert!(same(&|other| other.title = "other".into()) && same(&|other| other.output.stress = false));
+    assert!(!same(&|other| other.constraint = None) && !same(&|other| other.loads.clear()));
+    assert!(!same(
+        &|other| other.body = Body::Rigid(RigidBody { mass: 1.0, center_of_mass: [0.0; 3], inertia: [[0.0; 3]; 3] })
+    ));
 }
