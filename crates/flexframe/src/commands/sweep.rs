@@ -178,7 +178,7 @@ pub fn sweep(
     for (i, row) in plan.rows.iter().enumerate() {
         match row {
             _ if table.rows[i] != RowState::Open || !is_mine(i) => {}
-            Ok(system) => {
+            Ok(scene) => {
                 let inputs = scene.bodies.iter().map(|body| Assembly::input(body, &builder.needs)).collect();
                 match groups.iter_mut().rev().find(|(of_group, _)| *of_group == inputs) {
                     Some((_, rows)) => rows.push(i),
