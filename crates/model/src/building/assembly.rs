@@ -42,9 +42,11 @@ pub struct AssemblyInput<'a> {
     flexible: Flexible,
     flexibility: Choice,
     initial: Option<&'a Initial>,
-    /// With the loads, the attitude at the start and the end of the run.
-    about: Option<(About, &'a [Load], Option<[f64; 4]>, f64)>,
+    about: Option<Rest<'a>>,
 }
+
+/// The rest that modes are about: with the loads, the attitude at the start and the end of the run.
+type Rest<'a> = (About, &'a [Load], Option<[f64; 4]>, f64);
 
 /// Source of the matrices of a body.
 pub(crate) enum MadeOf {
