@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 
-use flexframe::fit::{Fit, FitSettings};
+use flexframe::fit::{FitSettings, ParameterFit};
 use model::Builder;
 use scene::{Body, Measured, MeasuredMode};
 
@@ -105,8 +105,8 @@ fn trials(case: &Case, stated: bool) -> Result<Vec<Counted>, Box<dyn Error>> {
         measured: Some(table(case.modes)),
         deviation: stated.then_some(NOISE),
     };
-    let truth = Fit::new(&scene(case, 1.0)?.into(), &Builder::default(), &settings, |_| ())?.frequencies()?;
-    let mut fit = Fit::new(&scene(case, START)?.into(), &Builder::default(), &settings, |_| ())?;
+    let truth = ParameterFit::new(&scene(case, 1.0)?.into(), &Builder::default(), &settings, |_| ())?.frequencies()?;
+    let mut fit = ParameterFit::new(&scene(case, START)?.into(), &Builder::default(), &settings, |_| ())?;
     let mut lot = Lot::new();
     let mut counted = vec![Counted::default(); case.parameters.len()];
     for _ in 0..TRIALS {

@@ -33,7 +33,7 @@ pub struct FitSettings {
 }
 
 /// A body, or bodies in joints, that are fitted to measured frequencies.
-pub struct Fit {
+pub struct ParameterFit {
     subject: Subject,
     measured: Measured,
     /// A standard deviation for each measured frequency: as stated, or the frequency itself where none is.
@@ -41,7 +41,7 @@ pub struct Fit {
     is_stated: bool,
 }
 
-impl Fit {
+impl ParameterFit {
     /// The fit of a scene of one body, or of bodies in joints.
     ///
     /// # Errors
@@ -162,7 +162,7 @@ pub fn fit(
     output: Option<&Path>,
     progress: impl FnMut(BuildProgress),
 ) -> Result<Report, Failure> {
-    let fit = Fit::new(scene, builder, settings, progress)?;
+    let fit = ParameterFit::new(scene, builder, settings, progress)?;
     fit.run()?.report(fit.subject.scene(), output)
 }
 
