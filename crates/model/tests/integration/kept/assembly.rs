@@ -2,7 +2,7 @@
 
 use modal::Progress;
 use model::{Assembly, BuildProgress, Builder, Cache, ModeCount, Needs};
-use scene::{Body, Choice, Effect, RigidBody, Scene};
+use scene::{Body, BodySource, Choice, Effect, RigidBody};
 
 use super::cache::{FORCE, built_by};
 use crate::{CLAMPED, bar, observations};
@@ -69,14 +69,13 @@ fn commands_with_other_needs_of_one_scene_share_what_is_the_same_and_nothing_els
     assert!([without_rows, external, modes, plain].iter().all(|other| *other == run));
     assert!(spin != run && fewer != run && spin != fewer);
     // A scene with other data of the same assembly shares it; another body, support or rest does not.
-    let same = |change: &dyn Fn(&mut Scene)| {
+    let same = |change: &dyn Fn(&mut Body)| {
         let mut other = scene.clone();
         change(&mut other);
         Assembly::input(&other, &needs[0]) == *run
     };
     assert!(same(&|other| other.title = "other".into()) && same(&|other| other.output.stress = false));
     assert!(!same(&|other| other.constraint = None) && !same(&|other| other.loads.clear()));
-    assert!(!same(
-        &|other| other.body = Body::Rigid(RigidBody { mass: 1.0, center_of_mass: [0.0; 3], inertia: [[0.0; 3]; 3] })
-    ));
+    assert!(!same(&|other| other.source =
+        BodySource::Rigid(RigidBody { mass: 1.0, center_of_mass: [0.0; 3], inertia: [[0.0; 3]; 3] })));
 }
