@@ -65,6 +65,11 @@ impl Figure for ChartStack {
         }
     }
 
+    /// A tall bitmap takes longer than the answer that it shows.
+    fn dots(&self) -> u32 {
+        if self.charts.len() > 2 { 1 } else { 2 }
+    }
+
     fn draw<DB: DrawingBackend>(&self, picture: &Area<DB>, unit: Unit) -> Result<(), FigureError> {
         let top = if self.title.is_empty() { 0.0 } else { 8.0 };
         let area = titled(picture.margin(unit.px(top), 0, 0, 0), &self.title, TITLE_EM, unit)?;

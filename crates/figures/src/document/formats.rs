@@ -14,8 +14,6 @@ use crate::document::picture::{FINE, Figure, Unit, draw_error};
 
 /// Units per dot of a bitmap.
 const SMOOTHING: u32 = 2;
-/// Dots per pixel of a PNG.
-const DOTS: u32 = 2;
 
 /// The three files of a figure: `<stem>.svg`, `<stem>.pdf` and `<stem>.png`.
 pub fn files(stem: &Path) -> [PathBuf; 3] {
@@ -68,8 +66,8 @@ pub(crate) fn svg(figure: &impl Figure) -> Result<String, FigureError> {
 }
 
 fn png(figure: &impl Figure) -> Result<Vec<u8>, FigureError> {
-    let rgb = rgb(figure, DOTS)?;
-    let [width, height] = figure.size().map(|pixels| pixels * DOTS);
+    let rgb = rgb(figure, figure.dots())?;
+    let [width, height] = figure.size().map(|pixels| pixels * figure.dots());
     let mut file = Vec::new();
     let mut encoder = png::Encoder::new(&mut file, width, height);
     encoder.set_color(png::ColorType::Rgb);

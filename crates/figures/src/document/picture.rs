@@ -29,6 +29,11 @@ pub(crate) trait Figure {
     /// Width and height in pixels.
     fn size(&self) -> [u32; 2];
 
+    /// Dots per pixel of a PNG.
+    fn dots(&self) -> u32 {
+        2
+    }
+
     /// Draws into an area of this size.
     fn draw<DB: DrawingBackend>(&self, area: &Area<DB>, unit: Unit) -> Result<(), FigureError>;
 }
