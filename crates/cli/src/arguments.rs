@@ -7,12 +7,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use diagnostic::{Diagnosis, Failure, Kind};
 use flexframe::linearize::LinearSettings;
-use flexframe::outputs::{OutputError, Written};
+use flexframe::outputs::OutputError;
 use scene::{Flexible, Scene};
 
 use crate::arguments::values::{angular_velocity, finite, mode_count};
+use crate::cli_error::CliError;
 use crate::output;
 use crate::scene_input::SceneInput;
+use crate::session::folder;
 
 #[derive(Debug, Args)]
 pub struct SceneArgs {
@@ -102,23 +104,21 @@ pub struct FileArgs {
 /// The folder for the files of a report.
 #[derive(Debug, Args)]
 pub struct FolderArgs {
-    /// Folder for the files: tables as CSV, charts and pages [default: out/<name of the scene file>].
+    /// Folder for the files: tables as CSV, figures and pages [default: out/<name of the file that the command reads>].
     #[arg(short, long, value_name = "DIR")]
-    pub output: Option<PathBuf>,
+    output: Option<PathBuf>,
     #[command(flatten)]
     pub files: FileArgs,
 }
 
 impl FolderArgs {
-    /// Refuses standard output and files.
-    pub fn check(&self) -> Result<(), Failure> {
-        output::require_file("--output", self.output.as_deref())?;
-        Ok(self.output.as_deref().map_or(Ok(()), |folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?)
+    /// Refuses standard output.
+    pub fn check(&self) -> Result<(), CliError> {
+        output::require_file("--output", self.output.as_deref())
     }
 
     /// The folder, or one named after the file that the command reads.
-    pub fn folder(&self, input: &Path) -> PathBuf {
-        let named = || Path::new("out").join(input.file_stem().unwrap_or("scene".as_ref()));
-        self.output.clone().unwrap_or_else(named)
+    pub fn folder(&self, input: &Path) -> Result<PathBuf, OutputError> {
+        folder(input, self.output.clone())
     }
 }

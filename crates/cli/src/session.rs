@@ -9,7 +9,7 @@ use flexframe::plausible;
 use flexframe::report::{File, Report};
 use flexframe::run::RunSettings;
 use model::Builder;
-use scene::{Body, Scene, Shared};
+use scene::{Body, Scene};
 use slepc::files_of_folder;
 
 use crate::arguments::{FolderArgs, ModeCountArgs, SceneArgs};
@@ -68,7 +68,7 @@ impl Session {
         let scene = self.read_scene(scene)?;
         let outputs = outputs_of_scene(&scene, &self.builder, out.files.overwrite);
         let outputs = tables.iter().fold(outputs, |outputs, table| outputs.and_input(table));
-        self.report(outputs, &out.folder(&scene.path), files, json, |session| command(session, &scene))
+        self.report(outputs, &out.folder(&scene.path)?, files, json, |session| command(session, &scene))
     }
 
     /// Claims the files of a command, runs it, writes the files of its report to the folder and prints it.
@@ -110,10 +110,10 @@ impl Session {
 /// Kind of file that export and report take.
 pub const RESULTS: &str = "a results file of `flexframe run`";
 
-/// The folder asked for, or one named after the scene.
-pub fn folder(scene: &Shared, output: Option<PathBuf>) -> Result<PathBuf, OutputError> {
+/// The folder asked for, or one named after the file that the command reads.
+pub fn folder(input: &Path, output: Option<PathBuf>) -> Result<PathBuf, OutputError> {
     if let Some(folder) = &output {
         Written::FOLDER.check(folder)?;
     }
-    Ok(output.unwrap_or_else(|| Path::new("out").join(scene.path.file_stem().unwrap_or("scene".as_ref()))))
+    Ok(output.unwrap_or_else(|| Path::new("out").join(input.file_stem().unwrap_or("scene".as_ref()))))
 }

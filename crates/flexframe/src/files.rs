@@ -1,6 +1,5 @@
 //! Files that commands read and write.
 
-pub(crate) mod csv;
 pub mod given_file;
 pub(crate) mod identity;
 pub(crate) mod json;

@@ -1,8 +1,8 @@
-//! Reports of the commands on small motions: data, tables, text and figures as those of the program, for `commands.py`.
+//! Reports of the commands on small motions, with the data, tables, text and figures of the program, for `commands.py`.
 
 use std::path::PathBuf;
 
-use flexframe::campbell::{self, AboutRest, CampbellProgress, CampbellSettings, Speeds, SystemCampbellSettings};
+use flexframe::campbell::{self, AboutRest, CampbellProgress, CampbellSettings, Speeds};
 use flexframe::frequencies::Frequencies;
 use flexframe::frf::{self, FrfSettings};
 use flexframe::linearize::LinearSettings;
@@ -233,26 +233,13 @@ pub(crate) fn campbell_report(
         other => return Err(wrong_input(py, "about_rest", other, "auto, always or never", "give one of them")),
     };
     let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-    let is_tied = system.has_connections();
-    if !is_tied && axis.is_none() {
-        return Err(wrong_input(py, "axis", "none", "the axis of the spin, in the axes of the mesh", "give [0, 0, 1]"));
-    }
+    let settings = CampbellSettings { axis, joint, speeds, orders, about_rest };
     let work = move |told: &mut dyn FnMut(BuildProgress)| {
-        let progress = |progress| {
+        campbell::campbell(&system, &builder, &settings, |progress| {
             if let CampbellProgress::Build(progress) = progress {
                 told(progress);
             }
-        };
-        match axis.filter(|_| !is_tied) {
-            Some(axis) => {
-                let settings = CampbellSettings { axis, speeds, orders, about_rest };
-                campbell::campbell(system.only_body()?, &builder, &settings, progress)
-            }
-            None => {
-                let settings = SystemCampbellSettings { axis, joint, speeds, orders };
-                campbell::campbell_of_system(&system, &builder, &settings, progress)
-            }
-        }
+        })
     };
     Ok(CommandReport { report: built(py, &scene, work)?, files: &campbell::FILES })
 }

@@ -154,7 +154,7 @@ fn least_range(what: &str, least: f64) -> Result<(), ReportError> {
 }
 
 /// Numbers are written in single precision, where those beyond 3e38 are infinite.
-fn finite(what: &str, values: impl Iterator<Item = f64>) -> Result<(), ReportError> {
+pub(crate) fn finite(what: &str, values: impl Iterator<Item = f64>) -> Result<(), ReportError> {
     match values.enumerate().find(|(_, value)| !(*value as f32).is_finite()) {
         None => Ok(()),
         Some((index, value)) => Err(ReportError::NotFinite { what: what.to_owned(), index, value }),

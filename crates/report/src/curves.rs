@@ -6,7 +6,9 @@ use figures::{ChartStack, LineChart, Scale, Series, Stroke};
 use serde::Serialize;
 use whole_file::write_whole;
 
+use crate::check::finite;
 use crate::numbers::Numbers;
+use crate::page::filled;
 use crate::{Fact, ReportError};
 
 /// The page that `./dev report-page` builds from `web/src/responses`.
@@ -24,8 +26,6 @@ const MAX_CURVES: usize = 12;
 const MAX_CHARTS: usize = 8;
 /// Part of the axis of the frequency that the label of a resonance takes.
 const ROOM: f64 = 0.07;
-/// Curves with a colour of their own: those after them are dashed.
-const COLOURS: usize = 7;
 
 /// Curves over the frequency.
 #[derive(Debug, Clone, PartialEq)]
@@ -145,10 +145,7 @@ impl Curves {
                 format!("{left_out} more curves are in the table beside this page (CSV): ask for fewer frequencies or outputs to see them here.")
             }),
         };
-        // Strings and finite numbers: they can all be written.
-        let json = serde_json::to_string(&data).unwrap_or_default();
-        // A text of the user could otherwise end the script that holds the data.
-        Ok(PAGE.replacen(PLACE, &json.replace('<', "\\u003c"), 1))
+        Ok(filled(PAGE, PLACE, &data))
     }
 
     /// Writes the page to `path`, whole or not at all.
@@ -193,7 +190,7 @@ impl Curves {
         let line = |(number, curve): (usize, &&Curve)| Series {
             label: curve.name.clone(),
             points: self.frequencies.iter().copied().zip(curve.values[k].iter().copied()).filter(is_drawn).collect(),
-            stroke: if number < COLOURS { Stroke::Solid } else { Stroke::Dashed },
+            stroke: Stroke::of_line(number),
         };
         let mut series: Vec<Series> = curves.iter().enumerate().map(line).collect();
         series.retain(|series| !series.points.is_empty());
@@ -240,7 +237,7 @@ impl Curves {
                 return Err(ReportError::Empty { what: what.to_owned() });
             }
         }
-        finite("frequencies", &self.frequencies)?;
+        finite("frequencies", self.frequencies.iter().copied())?;
         let length = |what: &str, found: usize, expected: usize| match found == expected {
             true => Ok(()),
             false => Err(ReportError::WrongLength { what: what.to_owned(), found, expected }),
@@ -252,18 +249,10 @@ impl Curves {
             length(&format!("{what}, texts"), curve.about.len(), self.headings.len())?;
             for values in &curve.values {
                 length(&what, values.len(), self.frequencies.len())?;
-                finite(&what, values)?;
+                finite(&what, values.iter().copied())?;
             }
         }
         Ok(())
-    }
-}
-
-/// Finite numbers that single precision can hold.
-fn finite(what: &str, values: &[f64]) -> Result<(), ReportError> {
-    match values.iter().position(|value| !(*value as f32).is_finite()) {
-        Some(index) => Err(ReportError::NotFinite { what: what.to_owned(), index, value: values[index] }),
-        None => Ok(()),
     }
 }
 

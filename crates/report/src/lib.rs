@@ -31,5 +31,5 @@ pub use run_page::{
     Compared, Component, Control, Effect, Fact, Live, LiveBody, PageBalance, PageBody, PageHistory, PageMotion,
     PageStress, PageSurface, PageTrustLine, PageUnits, RunPage, RunState, SceneText, Shape, ShapeKind, Trust,
 };
-pub use table::{Form, Table, quantity};
+pub use table::{Form, Table, quantity, quoted};
 pub use value::Value;

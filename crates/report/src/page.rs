@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use serde::Serialize;
 use whole_file::write_whole;
 
 use crate::check::check;
@@ -24,10 +25,15 @@ const PLACE: &str = "\"the data of the report\"";
 /// Lists that do not fit together, numbers that are not finite, more than 256 shapes.
 pub fn html(report: &RunPage) -> Result<String, ReportError> {
     check(report)?;
+    Ok(filled(PAGE, PLACE, &Data::new(report)))
+}
+
+/// A page with its data in their place.
+pub(crate) fn filled(page: &str, place: &str, data: &impl Serialize) -> String {
     // Strings and finite numbers: they can all be written.
-    let json = serde_json::to_string(&Data::new(report)).unwrap_or_default();
+    let json = serde_json::to_string(data).unwrap_or_default();
     // A text of the user could otherwise end the script that holds the data.
-    Ok(PAGE.replacen(PLACE, &json.replace('<', "\\u003c"), 1))
+    page.replacen(place, &json.replace('<', "\\u003c"), 1)
 }
 
 /// Writes the page to `path`, whole or not at all.

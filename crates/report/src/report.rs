@@ -25,8 +25,8 @@ pub struct Report {
     pub curves: Option<Curves>,
     /// Charts that are not of [`Self::curves`], by the name of their files.
     pub charts: Vec<(&'static str, ChartStack)>,
-    /// Tables that are files alone.
-    pub tables: Vec<Table>,
+    /// Tables that are CSV files, and not in text and JSON.
+    pub csv_tables: Vec<Table>,
     /// Reservations.
     pub warnings: Vec<String>,
     /// Files that were written.
@@ -64,12 +64,16 @@ impl File {
     /// The paths of some files in a folder.
     pub fn paths(files: &[Self], folder: &Path) -> Vec<PathBuf> {
         let paths = |file: &Self| match file {
-            Self::Table(name) => vec![folder.join(format!("{name}.csv"))],
-            Self::Page(name) => vec![folder.join(format!("{name}.html"))],
+            Self::Table(name) => vec![text_file(folder, name, "csv")],
+            Self::Page(name) => vec![text_file(folder, name, "html")],
             Self::Chart(name) => figures::files(&folder.join(name)).to_vec(),
         };
         files.iter().flat_map(paths).collect()
     }
+}
+
+fn text_file(folder: &Path, name: &str, ending: &str) -> PathBuf {
+    folder.join(format!("{name}.{ending}"))
 }
 
 impl Report {
@@ -186,18 +190,18 @@ impl Report {
         self.entries.iter().filter_map(fact).collect()
     }
 
-    /// All tables with a name, those of the text first.
+    /// All tables with a name, first those that text and JSON have.
     pub fn tables(&self) -> impl Iterator<Item = &Table> {
         let of_text = self.entries.iter().filter_map(|entry| match entry {
             Entry::Table(table) => Some(table),
             _ => None,
         });
-        of_text.chain(&self.tables).filter(|table| !table.name.is_empty())
+        of_text.chain(&self.csv_tables).filter(|table| !table.name.is_empty())
     }
 
     /// The table with a name; one that is a file alone goes before one of the text.
     pub fn table_named(&self, name: &str) -> Option<&Table> {
-        self.tables.iter().chain(self.tables()).find(|table| table.name == name)
+        self.csv_tables.iter().chain(self.tables()).find(|table| table.name == name)
     }
 
     /// The figure with the name of its files; none where there is nothing to draw.
@@ -220,28 +224,26 @@ impl Report {
             std::fs::create_dir_all(folder).map_err(failed(folder))?;
         }
         for file in files {
-            let paths = File::paths(&[*file], folder);
             match (file, &self.curves) {
                 (File::Table(name), _) => {
                     let Some(table) = self.table_named(name) else { continue };
-                    for path in &paths {
-                        write_whole(path, table.csv()).map_err(failed(path))?;
-                    }
+                    let path = text_file(folder, name, "csv");
+                    write_whole(&path, table.csv()).map_err(failed(&path))?;
+                    self.files.push(path);
                 }
-                (File::Page(_), Some(curves)) => {
-                    for path in &paths {
-                        let title = self.title.as_deref().unwrap_or_default();
-                        let words = PageWords { title, program, facts: self.facts(), warnings: &self.warnings };
-                        curves.write(words, path)?;
-                    }
+                (File::Page(name), Some(curves)) => {
+                    let title = self.title.as_deref().unwrap_or_default();
+                    let words = PageWords { title, program, facts: self.facts(), warnings: &self.warnings };
+                    let path = text_file(folder, name, "html");
+                    curves.write(words, &path)?;
+                    self.files.push(path);
                 }
                 (File::Chart(name), _) => {
                     let Some(figure) = self.figure(name) else { continue };
-                    figure.save(folder.join(name))?;
+                    self.files.extend(figure.save(folder.join(name))?);
                 }
-                (File::Page(_), None) => continue,
+                (File::Page(_), None) => {}
             }
-            self.files.extend(paths);
         }
         Ok(())
     }

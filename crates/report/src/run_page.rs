@@ -64,7 +64,7 @@ pub struct PageTrustLine {
 /// Another run that is shown beside the first: its bodies as ghosts. Its courses are components of the histories.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
-    /// Its name, such as that of its file.
+    /// Its name, such as the name of its file.
     pub name: String,
     /// Time of each of its rows, increasing.
     pub times: Vec<f64>,

@@ -150,12 +150,13 @@ fn decks_of_all_kinds_have_the_masses_and_frequencies_of_other_programs() {
                 assert!(said.contains(words), "{words}: {said}");
             }
             let settings = CampbellSettings {
-                axis: [0.0, 0.0, 1.0],
+                axis: Some([0.0, 0.0, 1.0]),
+                joint: None,
                 speeds: Speeds { start: 0.0, end: 1e-3, count: 2 },
                 orders: Vec::new(),
                 about_rest: AboutRest::Auto,
             };
-            let report = campbell(&scene, &Builder::default(), &settings, |_| ()).unwrap();
+            let report = campbell(&scene.clone().into(), &Builder::default(), &settings, |_| ()).unwrap();
             let said = "rest     not found of a body with masses beside it (`tied_masses`): vibrations about the undeformed body";
             assert!(report.to_string().contains(said), "{report}");
         }

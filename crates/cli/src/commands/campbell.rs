@@ -2,12 +2,11 @@
 
 use clap::Args;
 use diagnostic::Failure;
-use flexframe::campbell::{self, AboutRest, CampbellSettings, Speeds, SystemCampbellSettings};
+use flexframe::campbell::{self, AboutRest, CampbellSettings, Speeds};
 use flexframe::outputs::outputs_of_scene;
 
 use crate::arguments::values::{about_rest, axis, positive, speeds};
 use crate::arguments::{FolderArgs, ModeCountArgs, SceneArgs};
-use crate::cli_error::CliError;
 use crate::session::Session;
 
 /// Find natural frequencies against spin speed: table, CSV and Campbell diagram, with critical speeds.
@@ -57,20 +56,9 @@ impl Campbell {
         out.check()?;
         let scene = session.read_one(scene, modes)?;
         let outputs = outputs_of_scene(&scene, &session.builder, out.files.overwrite);
-        session.report(outputs, &out.folder(&scene.path), &campbell::FILES, json, |session| {
-            let report = if scene.has_connections() {
-                let settings = SystemCampbellSettings { axis, joint, speeds, orders };
-                campbell::campbell_of_system(&scene, &session.builder, &settings, |p| session.bar.campbell(p))
-            } else {
-                let axis = axis.ok_or_else(|| CliError::Option {
-                    option: "--axis",
-                    found: "none".to_owned(),
-                    expected: "the axis of the spin, in the axes of the mesh".to_owned(),
-                    help: "give x, y, z, or three numbers such as 0,0.6,0.8".to_owned(),
-                })?;
-                let settings = CampbellSettings { axis, speeds, orders, about_rest };
-                campbell::campbell(scene.only_body()?, &session.builder, &settings, |p| session.bar.campbell(p))
-            };
+        let settings = CampbellSettings { axis, joint, speeds, orders, about_rest };
+        session.report(outputs, &out.folder(&scene.path)?, &campbell::FILES, json, |session| {
+            let report = campbell::campbell(&scene, &session.builder, &settings, |p| session.bar.campbell(p));
             report.map_err(|error| modes.refusal(error))
         })
     }

@@ -37,7 +37,7 @@ impl Cost {
         output::require_file("--output", output.as_deref())?;
         let scene = session.read_scene(scene)?;
         let settings = CostSettings { target, ..CostSettings::with_patience(patience) };
-        let folder = folder(&scene, output)?;
+        let folder = folder(&scene.path, output)?;
         outputs_of_scene(&scene, &session.builder, files.overwrite).claim(&cost::files(&folder))?;
         let report = cost::price_list(&scene, &session.builder, &folder, settings, |p| session.bar.cost(p))?;
         drop(session.bar);

@@ -30,7 +30,7 @@ impl Paper {
         output::require_file("--output", output.as_deref())?;
         let scene = session.read(scene)?;
         let settings = RunSettings { check: true, ..session.settings(files.overwrite) };
-        let folder = folder(&scene, output)?;
+        let folder = folder(&scene.path, output)?;
         outputs_of_body(&scene, &session.builder, files.overwrite).claim(&paper::files(&folder))?;
         let report = paper::reproduce(&scene, &folder, &settings, |p| {
             session.signals.heard(p);

@@ -42,7 +42,7 @@ impl Run {
         if let Some(to) = solver.take_of(&scene.bodies, &mut session.builder, session.signals.slepc())? {
             return session.write_only(scene.only_body()?, &to, files.overwrite);
         }
-        let folder = folder(&scene, output)?;
+        let folder = folder(&scene.path, output)?;
         let settings = RunSettings { large, check: !no_check, ..session.settings(files.overwrite) };
         let (_, report) = run::run(&scene, &folder, &settings, |p| {
             session.signals.heard(p);

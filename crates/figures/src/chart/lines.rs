@@ -61,7 +61,7 @@ pub struct LineChart {
 impl LineChart {
     /// True without any point: then there is nothing to draw.
     pub fn is_empty(&self) -> bool {
-        self.series.iter().all(|series| series.points.is_empty())
+        without_points(&self.series)
     }
 
     /// Writes `<stem>.svg`, `<stem>.pdf` and `<stem>.png` and returns the three paths. Long histories are thinned to
@@ -183,9 +183,13 @@ impl Figure for LineChart {
     }
 }
 
+fn without_points(series: &[Series]) -> bool {
+    series.iter().all(|series| series.points.is_empty())
+}
+
 /// Refuses series that cannot be drawn over axes of these scales, x and y.
 pub(crate) fn check_series(title: &str, series: &[Series], scales: [Scale; 2]) -> Result<(), FigureError> {
-    if series.iter().all(|series| series.points.is_empty()) {
+    if without_points(series) {
         return Err(FigureError::Empty { figure: title.to_owned(), what: "point" });
     }
     for series in series {

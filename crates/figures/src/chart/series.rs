@@ -41,6 +41,13 @@ pub enum Stroke {
     Rings,
 }
 
+impl Stroke {
+    /// The stroke of the line with this number, from 0: solid while colours are new, dashed where they begin again.
+    pub fn of_line(number: usize) -> Self {
+        if number < COLOURS.len() { Self::Solid } else { Self::Dashed }
+    }
+}
+
 /// One line, or one set of rings, of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {

@@ -20,12 +20,11 @@ use diagnostic::{Diagnostic, Failure, Kind};
 use dynamics::{Effect, SpinMode, SteadySpin};
 use model::{BuildError, BuildProgress, Builder, Needs};
 use nalgebra::Vector3;
-use scene::Body;
+use scene::{Body, Scene};
 
 pub use bent::AboutRest;
 pub use report::FILES;
 use report::{Diagram, SpinEffects};
-pub use system::{SystemCampbellSettings, campbell_of_system};
 
 use crate::commands::modes::require_flexible;
 use crate::report::MeshReport;
@@ -78,13 +77,16 @@ impl Speeds {
 /// Settings of a diagram.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CampbellSettings {
-    /// Direction of the spin, axes of the mesh; any length but zero.
-    pub axis: [f64; 3],
+    /// Direction of the spin, any length but zero: of a body alone in the axes of the mesh; of bodies in joints global, through the center of
+    /// mass. A body alone needs one.
+    pub axis: Option<[f64; 3]>,
+    /// A joint about whose axis bodies in joints spin. Without axis and joint it is the joint that a drive turns.
+    pub joint: Option<String>,
     /// The spin speeds.
     pub speeds: Speeds,
     /// Engine orders: numbers of times a turn that loads come by.
     pub orders: Vec<f64>,
-    /// About what the vibrations are.
+    /// About what the vibrations of a body alone are.
     pub about_rest: AboutRest,
 }
 
@@ -109,33 +111,50 @@ fn unit(axis: [f64; 3]) -> Result<Vector3<f64>, Failure> {
 /// A body whose spin is held, about its undeformed shape.
 struct Undeformed<'a> {
     spin: &'a SteadySpin,
-    scene: &'a Body,
+    body: &'a Body,
 }
 
 impl Family for Undeformed<'_> {
     fn vibrations(&self, speed: f64) -> Result<Vec<SpinMode>, Failure> {
-        self.spin.modes(speed).map_err(|source| source.in_file(&self.scene.path))
+        self.spin.modes(speed).map_err(|source| source.in_file(&self.body.path))
     }
 
     fn resonances(&self, order: f64) -> Result<Option<Vec<f64>>, Failure> {
-        self.spin.critical_speeds(order).map(Some).map_err(|source| source.in_file(&self.scene.path))
+        self.spin.critical_speeds(order).map(Some).map_err(|source| source.in_file(&self.body.path))
     }
 }
 
-/// Computes the diagram of a scene.
+/// Computes the diagram of a scene of one body, or of the first bodies in joints of a scene.
 ///
-/// Effects are those of the scene's `[effects]`, where `"auto"` is on. All its modes are kept (`flexible = "auto"`: the
+/// Effects are those of the scene's `[effects]`, where `"auto"` is on. All modes are kept (`flexible = "auto"`: the
 /// most there may be).
 ///
 /// # Errors
 /// [`Failure`].
 pub fn campbell(
-    body: &Body,
+    scene: &Scene,
+    builder: &Builder,
+    settings: &CampbellSettings,
+    progress: impl FnMut(CampbellProgress),
+) -> Result<Report, Failure> {
+    match scene.has_connections() {
+        true => system::campbell_of_system(scene, builder, settings, progress),
+        false => campbell_of_body(scene, builder, settings, progress),
+    }
+}
+
+fn campbell_of_body(
+    scene: &Scene,
     builder: &Builder,
     settings: &CampbellSettings,
     mut progress: impl FnMut(CampbellProgress),
 ) -> Result<Report, Failure> {
-    let axis = unit(settings.axis)?;
+    let axis = settings.axis.ok_or_else(|| {
+        let wrong = Kind::Usage.alone().key("--axis").found("none");
+        let wrong = wrong.expected("the axis of the spin, in the axes of the mesh");
+        Failure::from(wrong.help("give x, y, z, or three numbers such as 0,0.6,0.8"))
+    })?;
+    let (axis, body) = (unit(axis)?, scene.only_body()?);
     let speeds = checked(settings.speeds, &settings.orders)?;
     // The rest at each speed is found here.
     let builder = builder.needing(Needs::spin());
@@ -176,7 +195,7 @@ pub fn campbell(
         _ => None,
     };
     let (family, static_shapes): (&dyn Family, _) = match &bent {
-        None => (&Undeformed { spin: &spin, scene: body }, model.static_shapes()),
+        None => (&Undeformed { spin: &spin, body }, model.static_shapes()),
         Some(bent) => (bent, 0),
     };
     let diagram = diagram::diagram(family, static_shapes, speeds, &settings.orders, done)?;

@@ -4,34 +4,22 @@
 
 use std::path::{Path, PathBuf};
 
+use report::Value;
 use serde::{Serialize, Serializer};
 
 /// A finite number as it is, another as the text "infinite", "-infinite" or "undefined".
 pub(crate) fn number<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    Number(*value).serialize(serializer)
+    Value::from(*value).json().serialize(serializer)
 }
 
 /// Each as [`number`].
 pub(crate) fn numbers<S: Serializer>(values: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(values.iter().map(|value| Number(*value)))
+    Value::from(values).json().serialize(serializer)
 }
 
 /// As [`number`], or `null` where there is none.
 pub(crate) fn optional<S: Serializer>(value: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
-    value.map(Number).serialize(serializer)
-}
-
-struct Number(f64);
-
-impl Serialize for Number {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self.0 {
-            value if value.is_finite() => serializer.serialize_f64(value),
-            value if value.is_nan() => serializer.serialize_str("undefined"),
-            value if value > 0.0 => serializer.serialize_str("infinite"),
-            _ => serializer.serialize_str("-infinite"),
-        }
-    }
+    Value::from(*value).json().serialize(serializer)
 }
 
 /// Values by their names.

@@ -42,7 +42,7 @@ impl Gradient {
         let outputs = outputs_of_scene(&scene, &session.builder, out.files.overwrite);
         let settings = GradientSettings { parameters, frequencies };
         let files = gradient::files(&settings);
-        session.report(outputs, &out.folder(&scene.path), &files, json, |session| {
+        session.report(outputs, &out.folder(&scene.path)?, &files, json, |session| {
             let report = gradient::gradient(&scene, &session.builder, &settings, |p| session.bar.build(p));
             report.map_err(|error| modes.refusal(error))
         })

@@ -40,7 +40,7 @@ impl Linearize {
         let scene = session.read_scene(scene)?;
         let file = match output {
             Some(file) => file,
-            None => folder(&scene, None)?.join("linear.mat"),
+            None => folder(&scene.path, None)?.join("linear.mat"),
         };
         outputs_of_scene(&scene, &session.builder, files.overwrite).claim(std::slice::from_ref(&file))?;
         let report =

@@ -50,6 +50,6 @@ impl Srs {
         out.check()?;
         let outputs = Outputs::new(vec![table.clone()], out.files.overwrite);
         let settings = SrsSettings { frequencies, damping_ratios: damping, interpolation };
-        session.report(outputs, &out.folder(&table), &srs::FILES, json, |_| srs::srs(&table, &settings))
+        session.report(outputs, &out.folder(&table)?, &srs::FILES, json, |_| srs::srs(&table, &settings))
     }
 }

@@ -18,10 +18,8 @@ pub const FILES: [File; 3] = [File::Table("campbell"), File::Table("critical_spe
 const ROWS: usize = 26;
 /// More modes than this do not fit a line.
 const COLUMNS: usize = 10;
-/// Colours that a chart has before they begin again.
-const COLOURS: usize = 7;
-/// More branches than this cannot be told apart.
-const MAX_BRANCHES: usize = 2 * COLOURS;
+/// More branches than this, solid and dashed, cannot be told apart.
+const MAX_BRANCHES: usize = 14;
 /// The diagram reaches this far above the highest order,
 const ABOVE_ORDERS: f64 = 1.15;
 /// but at most so far above the highest branch.
@@ -92,7 +90,7 @@ impl SpinEffects {
 }
 
 impl Diagram {
-    /// True if the vibrations are those of modes of one undeformed body.
+    /// True if the vibrations are about one undeformed body.
     fn of_undeformed(&self) -> bool {
         self.bodies.is_empty() && self.deflection.is_empty()
     }
@@ -196,7 +194,7 @@ impl Diagram {
             shown = shown.text_only(of.label(), Form::Plain, cells);
         }
         report.put("branches", Value::of(&self.branches));
-        report.tables.push(rows);
+        report.csv_tables.push(rows);
         report.table(shown);
         if each().take(COLUMNS).flat_map(|of| &of.growth).any(|growth| *growth > 0.0) {
             report.words("  ! the vibration grows");
@@ -252,7 +250,7 @@ impl Diagram {
         let branch = |(k, branch): (usize, &Branch)| Series {
             label: branch.label(),
             points: self.speeds.iter().copied().zip(branch.frequency.iter().copied()).collect(),
-            stroke: if k < COLOURS { Stroke::Solid } else { Stroke::Dashed },
+            stroke: Stroke::of_line(k),
         };
         let mut series: Vec<Series> = drawn.take(MAX_BRANCHES).enumerate().map(branch).collect();
         for order in orders {

@@ -11,21 +11,8 @@ use scene::Scene;
 
 use super::diagram::diagram;
 use super::report::{Diagram, SpinEffects};
-use super::{CampbellProgress, Speeds, checked, unit};
+use super::{CampbellProgress, CampbellSettings, checked, unit};
 use crate::commands::system_modes::{Rotors, TiedMotion, body_names, tied_motions};
-
-/// Settings of the diagram of a system.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SystemCampbellSettings {
-    /// Direction of the spin, global, through the center of mass; or that of a joint's axis.
-    pub axis: Option<[f64; 3]>,
-    /// A joint about whose axis all bodies spin. By default the one that a drive turns.
-    pub joint: Option<String>,
-    /// The spin speeds.
-    pub speeds: Speeds,
-    /// Engine orders: numbers of times a turn that loads come by.
-    pub orders: Vec<f64>,
-}
 
 /// Computes the diagram of the first system of a scene.
 ///
@@ -35,10 +22,10 @@ pub struct SystemCampbellSettings {
 ///
 /// # Errors
 /// [`Failure`].
-pub fn campbell_of_system(
+pub(super) fn campbell_of_system(
     scene: &Scene,
     builder: &Builder,
-    settings: &SystemCampbellSettings,
+    settings: &CampbellSettings,
     mut progress: impl FnMut(CampbellProgress),
 ) -> Result<Report, Failure> {
     let speeds = checked(settings.speeds, &settings.orders)?;
@@ -134,7 +121,7 @@ struct Axis {
 }
 
 /// The axis of the spin.
-fn axis_of(motion: &TiedMotion, settings: &SystemCampbellSettings) -> Result<Axis, Found> {
+fn axis_of(motion: &TiedMotion, settings: &CampbellSettings) -> Result<Axis, Found> {
     let of_motion = motion.run.motion();
     let joints = of_motion.system().joints();
     let is_meant = |joint: &dynamics::Joint| match &settings.joint {

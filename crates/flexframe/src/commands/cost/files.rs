@@ -114,21 +114,17 @@ fn write_failure(csv: &mut String, why: &str) -> std::fmt::Result {
 
 /// Draws time against error, a line a scheme, to `<stem>.svg`, `<stem>.pdf` and `<stem>.png`; nothing where there is nothing to draw.
 pub(super) fn draw(report: &CostReport, stem: &Path) -> Result<Vec<PathBuf>, FigureError> {
-    // A scheme whose runs all failed stays in the list, so that the others have the same colours in every scene.
-    let series: Vec<Series> = report.lines.iter().map(series).collect();
-    if series.iter().all(|series| series.points.is_empty()) {
-        return Ok(Vec::new());
-    }
     let chart = LineChart {
         title: format!("{}: what accuracy costs", report.title),
         x_label: "largest error against the reference".to_owned(),
         y_label: "time of the run, s".to_owned(),
         x_scale: Scale::Log,
         y_scale: Scale::Log,
-        series,
+        // A scheme whose runs all failed stays in the list, so that the others have the same colours in every scene.
+        series: report.lines.iter().map(series).collect(),
         reference: None,
     };
-    Ok(chart.save(stem)?.to_vec())
+    if chart.is_empty() { Ok(Vec::new()) } else { Ok(chart.save(stem)?.to_vec()) }
 }
 
 fn series(line: &Line) -> Series {

@@ -4,13 +4,13 @@ use std::io::Write;
 use std::path::Path;
 
 use diagnostic::{Failure, Kind};
+use report::quoted;
 use results::kind::NATURAL_MODE;
 use results::{Components, History, Metadata, Results, SystemRow, histories};
 use whole_file::WholeFile;
 
 use super::Exported;
 use super::rows::ExportRows;
-use crate::files::csv::quoted;
 use crate::files::outputs::{OutputError, Written, outputs_of_results};
 use crate::files::write_error::WriteError;
 use crate::rows::columns::COLUMNS;

@@ -34,7 +34,7 @@ pub struct FrfSettings {
 /// The response of an output to an input.
 struct Response<'a> {
     output: &'a str,
-    /// Unit of the output by that of the input.
+    /// Unit of the output by the unit of the input.
     unit: String,
     input: &'a str,
     magnitude: Vec<f64>,
@@ -66,8 +66,9 @@ pub fn frf(
     let response = equations.frequency_response(&frequencies, damping_of(settings.loss_factor));
     let response = response.map_err(|source| source.in_file(&scene.path))?;
     let responses = responses(equations, &response);
+    // The figure alone names them: where they are not found, the responses stand without.
     let resonances =
-        resonances(&equations.poles(damping_of(settings.loss_factor)).map_err(|e| e.in_file(&scene.path))?);
+        equations.poles(damping_of(settings.loss_factor)).map(|poles| resonances(&poles)).unwrap_or_default();
     let unit = frequency_unit(&scene.units.time);
 
     let mut report = Report::new(&scene.title);
@@ -96,7 +97,7 @@ pub fn frf(
         table = table.column(format!("|{output}/{input}|"), magnitude.iter().copied());
         table = table.column(format!("phase {output}/{input}"), phase.iter().copied());
     }
-    report.tables.push(table);
+    report.csv_tables.push(table);
     let curve = |of: Response| Curve {
         name: format!("{} / {}", of.output, of.input),
         about: vec![format!("{:.4e} at {:.6} {unit}", of.magnitude[of.highest], frequencies[of.highest])],

@@ -105,7 +105,7 @@ fn report_of(
     for (channel, of) in outputs() {
         table = table.column(&channel.name, of.density.iter().copied());
     }
-    report.tables.push(table);
+    report.csv_tables.push(table);
     let curve = |(channel, of): &(linear::Channel, linear::RandomResponse)| {
         let mut square = 0.0;
         let cumulated = of.density.iter().zip(weights).map(|(density, weight)| {

@@ -94,7 +94,7 @@ pub fn srs(table: &Path, settings: &SrsSettings) -> Result<Report, Failure> {
             .column(format!("acceleration_largest_{damping_ratio}"), peaks.iter().map(|of| of.acceleration_largest))
             .column(format!("acceleration_least_{damping_ratio}"), peaks.iter().map(|of| of.acceleration_least));
     }
-    report.tables.push(rows);
+    report.csv_tables.push(rows);
     let curve = |of: &Spectrum| Curve {
         name: format!("ζ = {}", of.damping_ratio),
         // The table has no units.

@@ -42,7 +42,7 @@ impl Carried {
         Self { participation: body.participation(&about), point, frequencies: None, is_free }
     }
 
-    /// The masses of a system; `is_asked`: the point is that of a user.
+    /// The masses of a system; `is_asked`: a user has named the point.
     pub(crate) fn of_system(found: SystemParticipation, is_asked: bool, unit: &str) -> Self {
         let point = if is_asked { "the point asked for" } else { "the first place on the ground" };
         let frequencies = found.circular_frequencies.iter().map(|omega| omega / TAU).collect();

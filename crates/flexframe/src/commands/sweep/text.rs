@@ -4,6 +4,7 @@ use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 
+use report::quoted;
 use toml::Value;
 use whole_file::WholeFile;
 
@@ -148,9 +149,4 @@ fn numbers<'a>(row: &'a RowState, widths: &'a [usize]) -> impl Iterator<Item = O
 /// A field of one line.
 fn quoted_line(text: &str) -> String {
     quoted(&text.lines().collect::<Vec<_>>().join(" "))
-}
-
-/// A field, in quotes where it has to be.
-fn quoted(text: &str) -> String {
-    if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

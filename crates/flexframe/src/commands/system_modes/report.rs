@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::assembled::TiedMotion;
 use super::rotors::{Rotors, SpinningRotor};
 use crate::commands::modes::{Carried, frequency_unit, table_of_modes};
+use crate::files::json;
 use crate::report::{counted, quantity};
 
 /// Part of a mode's energy from which a body or a joint is named.
@@ -91,6 +92,7 @@ pub struct Share {
     /// Name of the body, joint, spring or bushing.
     pub name: String,
     /// Its part.
+    #[serde(serialize_with = "json::number")]
     pub part: f64,
 }
 

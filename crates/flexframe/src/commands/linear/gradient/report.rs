@@ -174,7 +174,7 @@ impl Rates {
                 .column("output", each().map(|of| &of.output))
                 .column("values", each().map(|of| &of.values[..])),
         );
-        report.tables.extend([self.rows(), self.response_rows()]);
+        report.csv_tables.extend([self.rows(), self.response_rows()]);
         report
     }
 
