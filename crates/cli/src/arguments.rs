@@ -7,14 +7,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use diagnostic::{Diagnosis, Failure, Kind};
 use flexframe::linearize::LinearSettings;
-use flexframe::outputs::OutputError;
+use flexframe::outputs::{OutputError, Written};
 use scene::{Flexible, Scene};
 
 use crate::arguments::values::{angular_velocity, finite, mode_count};
 use crate::cli_error::CliError;
 use crate::output;
 use crate::scene_input::SceneInput;
-use crate::session::folder;
 
 #[derive(Debug, Args)]
 pub struct SceneArgs {
@@ -121,4 +120,12 @@ impl FolderArgs {
     pub fn folder(&self, input: &Path) -> Result<PathBuf, OutputError> {
         folder(input, self.output.clone())
     }
+}
+
+/// The folder asked for, or one named after the file that the command reads.
+pub fn folder(input: &Path, output: Option<PathBuf>) -> Result<PathBuf, OutputError> {
+    if let Some(folder) = &output {
+        Written::FOLDER.check(folder)?;
+    }
+    Ok(output.unwrap_or_else(|| Path::new("out").join(input.file_stem().unwrap_or("scene".as_ref()))))
 }

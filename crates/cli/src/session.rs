@@ -1,6 +1,6 @@
 //! Means that every command has: where bodies come from, signals and the progress bar.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use diagnostic::Failure;
 use flexframe::modes;
@@ -109,11 +109,3 @@ impl Session {
 
 /// Kind of file that export and report take.
 pub const RESULTS: &str = "a results file of `flexframe run`";
-
-/// The folder asked for, or one named after the file that the command reads.
-pub fn folder(input: &Path, output: Option<PathBuf>) -> Result<PathBuf, OutputError> {
-    if let Some(folder) = &output {
-        Written::FOLDER.check(folder)?;
-    }
-    Ok(output.unwrap_or_else(|| Path::new("out").join(input.file_stem().unwrap_or("scene".as_ref()))))
-}

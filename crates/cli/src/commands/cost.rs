@@ -9,9 +9,9 @@ use flexframe::cost::{self, CostSettings};
 use flexframe::outputs::outputs_of_scene;
 
 use crate::arguments::values::{patience, positive};
-use crate::arguments::{FileArgs, SceneArgs};
+use crate::arguments::{FileArgs, SceneArgs, folder};
 use crate::output;
-use crate::session::{Session, folder};
+use crate::session::Session;
 
 /// Measure error and computing time on a scene, for every scheme at many steps.
 #[derive(Debug, Args)]

@@ -8,9 +8,9 @@ use flexframe::outputs::outputs_of_body;
 use flexframe::paper;
 use flexframe::run::RunSettings;
 
-use crate::arguments::{FileArgs, SceneArgs};
+use crate::arguments::{FileArgs, SceneArgs, folder};
 use crate::output;
-use crate::session::{Session, folder};
+use crate::session::Session;
 
 /// Run the paper's plate and compare it with the paper: every figure, and a report.
 #[derive(Debug, Args)]

@@ -6,9 +6,9 @@ use clap::Args;
 use diagnostic::Failure;
 use flexframe::run::{self, RunSettings};
 
-use crate::arguments::{FileArgs, SceneArgs};
+use crate::arguments::{FileArgs, SceneArgs, folder};
 use crate::output;
-use crate::session::{Session, folder};
+use crate::session::Session;
 use crate::solver_input::SolverInput;
 
 /// Run a scene and write its motion to an HDF5 file.

@@ -7,9 +7,9 @@ use diagnostic::Failure;
 use flexframe::linearize::{self, Reduction};
 use flexframe::outputs::outputs_of_scene;
 
-use crate::arguments::{FileArgs, LinearArgs, SceneArgs};
+use crate::arguments::{FileArgs, LinearArgs, SceneArgs, folder};
 use crate::output;
-use crate::session::{Session, folder};
+use crate::session::Session;
 
 /// Write the linear model of small motions, x' = A x + B u and y = C x + D u, for control and for other programs.
 ///

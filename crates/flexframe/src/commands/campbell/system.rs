@@ -11,7 +11,7 @@ use scene::Scene;
 
 use super::diagram::diagram;
 use super::report::{Diagram, SpinEffects};
-use super::{CampbellProgress, CampbellSettings, checked, unit};
+use super::settings::{CampbellProgress, CampbellSettings, checked, unit};
 use crate::commands::system_modes::{Rotors, TiedMotion, body_names, tied_motions};
 
 /// Computes the diagram of the first system of a scene.
