@@ -108,6 +108,11 @@ reference:
     FLEXFRAME_ACCEPT=1 cargo test --quiet --package flexframe-cli --bin flexframe documentation
     .ci/python-page
 
+# Published benchmarks beside ours: docs/evidence/benchmarks.md (a minute or two).
+benchmarks: build
+    {{flexframe}} verify -o out/benchmarks
+    cp out/benchmarks/benchmarks.md docs/evidence/benchmarks.md
+
 # The price of accuracy: docs/evidence/accuracy.md and its diagrams from real runs of three scenes (some minutes).
 accuracy:
     cargo run --release --quiet --package verification --bin accuracy -- docs/evidence/accuracy.md examples/accuracy/{pulse,tumbling,spin}.toml --overwrite

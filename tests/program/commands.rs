@@ -12,3 +12,4 @@ pub(crate) mod new_scene;
 pub(crate) mod sweep;
 pub(crate) mod systems;
 pub(crate) mod trust;
+pub(crate) mod verify;

@@ -1,5 +1,6 @@
 //! The command line: options of the program, and its commands.
 
+use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -12,7 +13,7 @@ use toml::Value;
 
 use crate::cli_error::{self, CliError};
 use crate::commands::{
-    advise, campbell, check, cost, fmu, linear, modes, new, paper, pictures, reduce, resume, run, sweep,
+    advise, campbell, check, cost, fmu, linear, modes, new, paper, pictures, reduce, resume, run, sweep, verify,
 };
 use crate::progress::Bar;
 use crate::session::Session;
@@ -80,6 +81,7 @@ enum Command {
     #[command(verbatim_doc_comment)]
     Schema,
     Animate(pictures::animate::Animate),
+    Verify(verify::Verify),
 }
 
 pub fn main() -> ExitCode {
@@ -134,8 +136,19 @@ fn execute(cli: Cli, json: bool) -> Result<(), Failure> {
 fn command(cli: Cli, json_errors: bool, builder: Builder) -> Result<(), Failure> {
     let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
     threads::start(cli.threads)?;
-    let session = Session { builder, signals, bar: Bar::new(json_errors), json_errors };
-    match cli.command {
+    execute_command(cli.command, Session { builder, signals, bar: Bar::new(json_errors), json_errors, taken: None })
+}
+
+/// Executes a command line that another command asks for, without the name of the program.
+fn execute_words(words: &[OsString], session: Session) -> Result<(), Failure> {
+    let program = OsString::from("flexframe");
+    let parsed = Cli::try_parse_from(std::iter::once(&program).chain(words));
+    let cli = parsed.map_err(|error| Kind::Usage.alone().says(error.render().to_string().trim().to_owned()))?;
+    execute_command(cli.command, session)
+}
+
+fn execute_command(command: Command, session: Session) -> Result<(), Failure> {
+    match command {
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "flexframe", &mut script);
@@ -165,6 +178,7 @@ fn command(cli: Cli, json_errors: bool, builder: Builder) -> Result<(), Failure>
         Command::Play(command) => command.execute(session),
         Command::Sweep(command) => command.execute(session),
         Command::Animate(command) => command.execute(session),
+        Command::Verify(command) => command.execute(session, execute_words),
     }
 }
 

@@ -14,3 +14,4 @@ pub mod reduce;
 pub mod resume;
 pub mod run;
 pub mod sweep;
+pub mod verify;

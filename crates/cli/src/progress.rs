@@ -9,6 +9,7 @@ use flexframe::check::CheckProgress;
 use flexframe::cost::CostProgress;
 use flexframe::run::RunProgress;
 use flexframe::sweep::SweepProgress;
+use flexframe::verify::VerifyProgress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use memory::Bytes;
 use modal::{EnginePhase, Forecast, Progress};
@@ -117,6 +118,10 @@ impl Bar {
             SweepProgress::Build(progress) => self.build(progress),
             SweepProgress::Rows { done, total } => self.show("sweeping", Some((done, total))),
         }
+    }
+
+    pub fn verify(&mut self, VerifyProgress { case, done, total }: VerifyProgress) {
+        self.show(&format!("verifying {case}"), Some((done as u64, total as u64)));
     }
 
     fn show(&mut self, phase: &str, done: Option<(u64, u64)>) {

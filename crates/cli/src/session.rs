@@ -1,6 +1,9 @@
 //! Means that every command has: where bodies come from, signals and the progress bar.
 
+use std::cell::OnceCell;
+use std::fmt::Display;
 use std::path::Path;
+use std::rc::Rc;
 
 use diagnostic::Failure;
 use flexframe::modes;
@@ -10,9 +13,12 @@ use flexframe::report::{File, Report};
 use flexframe::run::RunSettings;
 use model::Builder;
 use scene::{Body, Scene};
+use serde::Serialize;
+use serde_json::Value;
 use slepc::files_of_folder;
 
 use crate::arguments::{FolderArgs, ModeCountArgs, SceneArgs};
+use crate::cli_error::CliError;
 use crate::output;
 use crate::progress::Bar;
 use crate::scene_input::SceneInput;
@@ -25,7 +31,12 @@ pub struct Session {
     pub bar: Bar,
     /// True if standard error has an error as JSON, and nothing else.
     pub json_errors: bool,
+    /// The place of the report, where it is not printed.
+    pub taken: Option<Taken>,
 }
+
+/// A report that a command of this program has asked another one for.
+pub type Taken = Rc<OnceCell<Value>>;
 
 impl Session {
     /// The scene of one body, after doubts about it have been told.
@@ -83,8 +94,17 @@ impl Session {
         outputs.claim(&File::paths(files, folder))?;
         let mut report = command(&mut self)?;
         report.write(files, folder, &flexframe::report::program())?;
-        drop(self.bar);
-        output::print(&report, json)
+        self.print(&report, json)
+    }
+
+    /// Prints a report, or hands it to the command that has asked for it.
+    pub fn print<R: Serialize + Display>(self, report: &R, json: bool) -> Result<(), Failure> {
+        let Self { bar, taken, .. } = self;
+        drop(bar);
+        match taken {
+            Some(taken) => Ok(taken.set(serde_json::to_value(report).map_err(CliError::from)?).unwrap_or_default()),
+            None => output::print(report, json),
+        }
     }
 
     pub fn tell_doubts(&self, scene: &Scene) {

@@ -30,6 +30,7 @@ const ONE_REQUEST: Duration = Duration::from_millis(500);
 const ENDS: [i32; 6] = [SIGQUIT, SIGABRT, SIGXCPU, SIGALRM, SIGUSR1, SIGUSR2];
 
 /// Listens to signals.
+#[derive(Clone)]
 pub struct Signals {
     /// True if a motion is being computed that can be resumed.
     in_motion: Arc<AtomicBool>,

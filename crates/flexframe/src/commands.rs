@@ -15,3 +15,4 @@ pub mod pictures;
 pub mod run;
 pub mod sweep;
 pub mod system_modes;
+pub mod verify;

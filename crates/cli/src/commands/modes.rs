@@ -62,8 +62,7 @@ impl Modes {
             true => self.of_bodies_in_joints(&scene, &mut session)?,
             false => self.of_bodies(&scene, &mut session)?,
         };
-        drop(session.bar);
-        output::print(&report, self.scene.json)
+        session.print(&report, self.scene.json)
     }
 
     /// Refuses what only one body has.

@@ -48,7 +48,6 @@ impl Run {
             session.signals.heard(p);
             session.bar.run(p);
         })?;
-        drop(session.bar);
-        output::print(&report, json)
+        session.print(&report, json)
     }
 }

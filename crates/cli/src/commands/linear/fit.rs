@@ -59,8 +59,7 @@ impl Fit {
         let settings = FitSettings { parameters, measured, deviation };
         let report = fit::fit(&scene, &session.builder, &settings, output.as_deref(), |p| session.bar.build(p))
             .map_err(|error| modes.refusal(error))?;
-        drop(session.bar);
-        output::print(&report, json)
+        session.print(&report, json)
     }
 }
 

@@ -45,7 +45,6 @@ impl Linearize {
         outputs_of_scene(&scene, &session.builder, files.overwrite).claim(std::slice::from_ref(&file))?;
         let report =
             linearize::linearize(&scene, &session.builder, &about.settings(), reduce, &file, |p| session.bar.build(p))?;
-        drop(session.bar);
-        output::print(&report, json)
+        session.print(&report, json)
     }
 }

@@ -10,7 +10,6 @@ use scene::Interpolation;
 
 use crate::arguments::values::interpolation;
 use crate::arguments::{AboutArgs, SceneArgs};
-use crate::output;
 use crate::session::Session;
 
 /// Sum the peaks of the modes under a shock of the base or of a load: absolute, SRSS and CQC.
@@ -45,7 +44,6 @@ impl Shock {
         let settings = about.settings(vec![input], outputs);
         let table = (table.as_path(), interpolation);
         let report = shock::shock(&scene, &session.builder, table, &settings, |p| session.bar.build(p))?;
-        drop(session.bar);
-        output::print(&report, json)
+        session.print(&report, json)
     }
 }
