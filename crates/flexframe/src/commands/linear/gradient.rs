@@ -1,6 +1,8 @@
 //! `flexframe gradient`: rates of frequencies, effective masses and static answers with the numbers that a body is made with.
 
+mod alone;
 mod damping;
+pub(crate) mod found;
 mod here;
 pub(crate) mod number;
 mod report;
@@ -11,7 +13,7 @@ mod varying;
 
 use ::report::{File, Report};
 use diagnostic::Failure;
-use model::{BuildProgress, Builder, Parameter, RatesOf};
+use model::{BuildProgress, Builder};
 use scene::Scene;
 
 use self::report::Rates;
@@ -52,15 +54,9 @@ pub fn gradient(
         None => Vec::new(),
     };
     let numbers = Number::named(scene, &settings.parameters)?;
-    let rates = match Varied::new(scene, builder, progress)? {
-        Varied::System(varied) => {
-            Rates::of_system(scene, &numbers, varied.rates(scene, &numbers, &frequencies)?, frequencies)
-        }
-        Varied::Body(body) => {
-            let parameters: Vec<Parameter> = numbers.iter().filter_map(Number::parameter).cloned().collect();
-            let found = body.rates(body.body(), &parameters, RatesOf::All)?;
-            Rates::new(&body, &parameters, &found, frequencies)
-        }
+    let found = match Varied::new(scene, builder, progress)? {
+        Varied::System(varied) => varied.rates(scene, &numbers, &frequencies)?,
+        Varied::Body(body) => alone::rates(&body, &numbers, &frequencies)?,
     };
-    Ok(rates.report(scene))
+    Ok(Rates::new(scene, &numbers, found, frequencies).report(scene))
 }

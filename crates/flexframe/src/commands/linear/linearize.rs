@@ -27,7 +27,7 @@ use scene::Scene;
 
 pub use at_once::AtOnce;
 use at_time::{moving_modes, states_at};
-pub(super) use channels::{acting_loads, input_channels};
+pub(super) use channels::{BodyRows, acting_loads, input_channels};
 use growth::growing;
 pub use reduction::{Reduced, Reduction};
 pub use settings::LinearSettings;

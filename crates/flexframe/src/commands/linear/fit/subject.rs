@@ -104,7 +104,11 @@ impl Subject {
                     let expected = format!("at most {there}, the vibrations of the bodies");
                     return Err(wrong.expected(expected).help("leave lines out, or keep more modes").into());
                 }
-                (found.frequencies, found.rates, (0..count).collect())
+                (
+                    found.frequencies,
+                    found.rates.into_iter().map(|rates| rates.frequencies).collect(),
+                    (0..count).collect(),
+                )
             }
         };
         let slope = |i: usize| if self.numbers[i].is_poisson_ratio() { 1.0 } else { values[i] };

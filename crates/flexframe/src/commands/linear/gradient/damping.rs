@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use faer::c64;
 use scene::Damping;
 
 /// Relative step within a straight piece of a table of damping ratios.
@@ -33,5 +34,14 @@ impl Damped {
             Self { omega, damping: 2.0 * ratio(omega) * omega, slope }
         };
         frequencies.iter().enumerate().map(mode).collect()
+    }
+    /// λ − ω² + iω·2ζ√λ at a circular frequency ω.
+    pub fn stiffness(&self, omega: f64) -> c64 {
+        c64::new(self.omega * self.omega - omega * omega, omega * self.damping)
+    }
+
+    /// Its rate, by that of λ.
+    pub fn stiffness_rate(&self, omega: f64, rate: f64) -> c64 {
+        c64::new(rate, omega * self.slope * rate / (2.0 * self.omega))
     }
 }

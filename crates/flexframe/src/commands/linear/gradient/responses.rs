@@ -1,94 +1,86 @@
-//! Frequency responses of points by sums of modes, with their rates: Eq. (D11) of `docs/method/gradients.md`.
+//! Frequency responses with their rates: Eqs. (D11) and (D21) of `docs/method/gradients.md`.
 
 use std::f64::consts::TAU;
 
-use faer::c64;
-use model::{BodyRates, ParameterRates, Residues};
-use nalgebra::Vector3;
-use scene::Damping;
-
-use super::damping::Damped;
+use diagnostic::Failure;
+use faer::{Mat, c64};
 
 /// Names of the axes.
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The response of a displacement of a point to the factor on a load, by the modes that are kept.
+/// Real and imaginary parts at each frequency.
+pub(crate) type Values = Vec<[f64; 2]>;
+
+/// The response of an output, such as tip.displacement.y, to an input, such as the factor on a load.
 #[derive(Debug, Clone)]
 pub(crate) struct ResponseReport {
-    /// The load.
     pub input: String,
-    /// The displacement, such as tip.displacement.y.
     pub output: String,
-    /// Real and imaginary part at each frequency.
-    pub values: Vec<[f64; 2]>,
+    pub values: Values,
 }
 
-/// The responses of a body, by load, then point, then axis.
-pub(super) fn responses(
-    found: &BodyRates,
-    [loads, points]: [&[String]; 2],
-    damping: &Damping,
-    frequencies: &[f64],
-) -> Vec<ResponseReport> {
-    let modes = Damped::modes(&found.frequencies, damping);
-    let mut reports = Vec::new();
-    for (load, forces) in loads.iter().zip(&found.modal_forces) {
-        for (p, point) in points.iter().enumerate() {
-            for (axis, name) in AXES.iter().enumerate() {
-                let at = |frequency: &f64| -> c64 {
-                    let terms = modes.iter().enumerate().map(|(k, mode)| {
-                        c64::new(found.shapes[k][p][axis] * forces[k], 0.0) / mode.stiffness(*frequency)
-                    });
-                    terms.sum()
-                };
-                reports.push(ResponseReport {
-                    input: load.clone(),
-                    output: format!("{point}.displacement.{name}"),
-                    values: frequencies.iter().map(at).map(|value| [value.re, value.im]).collect(),
-                });
+/// Responses, by input, then output, with their rates by number; none of a load that follows the number in a way that is not known.
+pub(crate) struct Responses {
+    pub responses: Vec<ResponseReport>,
+    pub rates: Vec<Vec<Option<Values>>>,
+}
+
+/// Inputs and outputs over coordinates of unit mass.
+pub(super) struct Ports {
+    /// Names of inputs and of outputs.
+    pub names: [Vec<String>; 2],
+    /// Forces of inputs, then displacements that outputs see, a column each.
+    pub rows: Mat<f64>,
+}
+
+/// Motions at a frequency by the forces of each port.
+pub(super) struct Moved {
+    pub coordinates: Vec<Vec<c64>>,
+    /// The same over the coordinates of all bodies.
+    pub motions: Vec<Vec<c64>>,
+}
+
+/// The rate of a response with a number: by circular frequency, input and output, and the motions there.
+pub(super) type Change<'a> = Box<dyn Fn(f64, [usize; 2], &Moved) -> Option<c64> + 'a>;
+
+impl Responses {
+    /// No responses, of some numbers.
+    pub fn none(numbers: usize) -> Self {
+        Self { responses: Vec::new(), rates: vec![Vec::new(); numbers] }
+    }
+
+    /// The responses at some frequencies, cycles per time, with the change by each number; `moved` is by circular frequency.
+    pub fn new(
+        ports: &Ports,
+        frequencies: &[f64],
+        changes: &[Change<'_>],
+        moved: impl Fn(f64) -> Result<Moved, Failure>,
+    ) -> Result<Self, Failure> {
+        let [inputs, outputs] = &ports.names;
+        let pairs = (0..inputs.len()).flat_map(|i| (0..outputs.len()).map(move |o| [i, inputs.len() + o]));
+        let pairs: Vec<[usize; 2]> = pairs.collect();
+        let mut values = vec![Values::new(); pairs.len()];
+        let mut rates = vec![vec![Some(Values::new()); pairs.len()]; changes.len()];
+        for frequency in frequencies {
+            let omega = TAU * frequency;
+            let moved = moved(omega)?;
+            for (k, [i, o]) in pairs.iter().enumerate() {
+                let motion = moved.coordinates[*i].iter().enumerate();
+                let value: c64 = motion.map(|(j, x)| ports.rows[(j, *o)] * x).sum();
+                values[k].push([value.re, value.im]);
+                for (change, rates) in changes.iter().zip(&mut rates) {
+                    match (change(omega, [*i, *o], &moved), &mut rates[k]) {
+                        (Some(rate), Some(values)) => values.push([rate.re, rate.im]),
+                        (_, rates) => *rates = None,
+                    }
+                }
             }
         }
-    }
-    reports
-}
-
-/// Rates of the same; none of a load whose forces have no known rates.
-pub(super) fn rates(
-    found: &BodyRates,
-    of: &ParameterRates,
-    points: usize,
-    damping: &Damping,
-    frequencies: &[f64],
-) -> Vec<Option<Vec<[f64; 2]>>> {
-    let modes = Damped::modes(&found.frequencies, damping);
-    let of_output = |residues: &Residues, p: usize, axis: usize| {
-        let at = |frequency: &f64| -> c64 {
-            let terms = modes.iter().enumerate().map(|(k, mode)| {
-                let of_point = |list: &[Vec<Vector3<f64>>]| c64::new(list[k][p][axis], 0.0);
-                let stiffness = mode.stiffness(*frequency);
-                let rate = mode.stiffness_rate(*frequency, of.eigenvalues[k]);
-                of_point(&residues.rates) / stiffness - of_point(&residues.values) * rate / (stiffness * stiffness)
-            });
-            terms.sum()
+        let report = |([i, o], values): (&[usize; 2], Values)| ResponseReport {
+            input: inputs[*i].clone(),
+            output: outputs[o - inputs.len()].clone(),
+            values,
         };
-        frequencies.iter().map(at).map(|value| [value.re, value.im]).collect()
-    };
-    let outputs = || (0..points).flat_map(|p| (0..AXES.len()).map(move |axis| (p, axis)));
-    let of_load = |residues: &Option<Residues>| -> Vec<Option<Vec<[f64; 2]>>> {
-        outputs().map(|(p, axis)| residues.as_ref().map(|residues| of_output(residues, p, axis))).collect()
-    };
-    of.residues.iter().flat_map(of_load).collect()
-}
-
-impl Damped {
-    /// λ − ω² + iω·2ζ√λ.
-    fn stiffness(&self, frequency: f64) -> c64 {
-        let omega = TAU * frequency;
-        c64::new(self.omega * self.omega - omega * omega, omega * self.damping)
-    }
-
-    /// Its rate, by that of λ.
-    fn stiffness_rate(&self, frequency: f64, rate: f64) -> c64 {
-        c64::new(rate, TAU * frequency * self.slope * rate / (2.0 * self.omega))
+        Ok(Self { responses: pairs.iter().zip(values).map(report).collect(), rates })
     }
 }

@@ -15,9 +15,10 @@ use model::{BuildError, BuildProgress, Builder, Model, Needs, Parameter, VariedB
 use scene::Scene;
 
 use super::damping::Damped;
+use super::found::{Found, RatesOfNumber};
 use super::here::{Here, NumbersOfBody};
 use super::number::{Number, Place};
-use super::system_responses::SystemResponses;
+use super::responses::Responses;
 use super::varying::{Varying, product};
 use crate::commands::modes::lone_body;
 
@@ -47,14 +48,6 @@ pub(crate) struct VariedSystem {
     models: Vec<Model>,
 }
 
-/// Frequencies of the vibrations of a system, cycles per time, and their rates by number.
-pub(crate) struct SystemRates {
-    pub frequencies: Vec<f64>,
-    pub repeated: Vec<Range<usize>>,
-    pub rates: Vec<Vec<f64>>,
-    pub responses: SystemResponses,
-}
-
 impl VariedSystem {
     /// The bodies of a scene.
     fn new(scene: &Scene, builder: &Builder, progress: impl FnMut(BuildProgress)) -> Result<Self, Failure> {
@@ -64,7 +57,7 @@ impl VariedSystem {
     }
 
     /// Frequencies and responses with their rates of a scene with other numbers, at rest where it stands at the start.
-    pub fn rates(&self, scene: &Scene, numbers: &[Number], frequencies: &[f64]) -> Result<SystemRates, Failure> {
+    pub fn rates(&self, scene: &Scene, numbers: &[Number], frequencies: &[f64]) -> Result<Found, Failure> {
         let is_same = |i: usize| scene.bodies[i].source == self.system.bodies[i].source;
         let anew = if (0..scene.bodies.len()).all(is_same) { None } else { Some(self.builder.models(scene, |_| ())?) };
         let here = Here::new(scene, anew.as_deref().unwrap_or(&self.models))?;
@@ -87,12 +80,17 @@ impl VariedSystem {
                 })
             }
         });
-        let rates = rates.collect::<Result<_, _>>()?;
-        Ok(SystemRates {
+        let rates: Vec<Vec<f64>> = rates.collect::<Result<_, _>>()?;
+        let Responses { responses, rates: of_responses } =
+            here.responses(numbers, &stiffness_rates, &varied, frequencies)?;
+        let of_number = |(frequencies, responses)| RatesOfNumber { frequencies, responses, ..Default::default() };
+        Ok(Found {
             frequencies: here.modes.iter().map(|mode| mode.circular_frequency() / TAU).collect(),
             repeated,
-            rates,
-            responses: here.responses(numbers, &stiffness_rates, &varied, frequencies)?,
+            effective_masses: Vec::new(),
+            statics: Vec::new(),
+            responses,
+            rates: rates.into_iter().zip(of_responses).map(of_number).collect(),
         })
     }
 

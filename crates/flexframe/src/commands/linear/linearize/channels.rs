@@ -1,6 +1,8 @@
 //! Names and units of inputs and outputs.
 
 use diagnostic::{Failure, Kind};
+use dynamics::PointShapes;
+use faer::Mat;
 use linear::{Channel, Output, Rate, SecondOrder};
 use model::Model;
 use nalgebra::Vector3;
@@ -89,50 +91,91 @@ pub(in crate::commands::linear) fn input_channels(body: &Body, model: &Model, pr
         .collect()
 }
 
-/// Displacement, velocity and acceleration of a point along the axes of its body, by its displacement in each coordinate.
-pub(super) fn point_outputs(scene: &Shared, name: &str, columns: &[Vector3<f64>]) -> Vec<Output> {
+/// Displacements of the points of a body and stresses there, by rows over its coordinates: ρ and φ of its frame, and δq.
+pub(in crate::commands::linear) struct BodyRows<'a> {
+    given: &'a Body,
+    model: &'a Model,
+    modal_displacement: &'a [f64],
+    /// With large modes, the slopes of what modes do over their coordinates.
+    slopes: Option<Vec<Vec<f64>>>,
+    /// The beginning of the names of its channels, where others have bodies, too.
+    pub prefix: String,
+}
+
+impl<'a> BodyRows<'a> {
+    pub fn new(given: &'a Body, model: &'a Model, modal_displacement: &'a [f64], is_alone: bool) -> Self {
+        let name = given.name.as_ref().filter(|_| !is_alone);
+        let prefix = name.map_or_else(String::new, |name| format!("{name}."));
+        Self { given, model, modal_displacement, slopes: model.coordinate_slopes(modal_displacement), prefix }
+    }
+
+    /// The name of each point, with its displacement along the axes of the body.
+    pub fn points(&self) -> Vec<(String, [Vec<f64>; 3])> {
+        let of_point = |(name, point): &(String, PointShapes)| {
+            let arm = self.model.arm(point, self.modal_displacement);
+            // ρ + φ×x + Ψ δq.
+            let column = |k: usize| match k {
+                0..3 => Vector3::ith(k, 1.0),
+                3..6 => Vector3::ith(k - 3, 1.0).cross(&arm),
+                _ => self.slopes.as_ref().map_or(point.columns()[k], |slopes| {
+                    point.columns()[6..].iter().zip(&slopes[k - 6]).map(|(shape, slope)| *shape * *slope).sum()
+                }),
+            };
+            let columns: Vec<Vector3<f64>> = (0..6 + self.modal_displacement.len()).map(column).collect();
+            let row = |axis: usize| columns.iter().map(|column| column[axis]).collect();
+            (format!("{}{name}", self.prefix), [0, 1, 2].map(row))
+        };
+        self.model.points.iter().map(of_point).collect()
+    }
+
+    /// Stress components of each point in each material there, body axes.
+    pub fn stresses(&self) -> Vec<(Channel, Vec<f64>)> {
+        let unit = UnitLabels::from(&self.given.units).stress();
+        let of_stress = self.model.stress.as_ref().map_or(&[][..], |stress| stress.of_points());
+        let mut rows = Vec::new();
+        for ((name, _), materials) in self.model.points.iter().zip(of_stress) {
+            for (number, shapes) in materials.iter().enumerate() {
+                let material = if materials.len() > 1 { format!("[{number}]") } else { String::new() };
+                for (component, letters) in STRESS.into_iter().enumerate() {
+                    let of = |k: usize| match &self.slopes {
+                        None => shapes[k][component],
+                        Some(slopes) => shapes.iter().zip(&slopes[k]).map(|(of, slope)| of[component] * slope).sum(),
+                    };
+                    let modes = (0..self.modal_displacement.len()).map(of);
+                    let name = format!("{}{name}.stress{material}.{letters}", self.prefix);
+                    rows.push((Channel::new(name, unit.clone()), [0.0; 6].into_iter().chain(modes).collect()));
+                }
+            }
+        }
+        rows
+    }
+}
+
+/// A row over the coordinates from `first` on, over independent coordinates by their columns.
+pub(super) fn over_columns(row: &[f64], basis: &Mat<f64>, first: usize) -> Vec<f64> {
+    let along = |j: usize| row.iter().enumerate().map(|(k, r)| r * basis[(first + k, j)]).sum();
+    (0..basis.ncols()).map(along).collect()
+}
+
+/// Displacement, velocity and acceleration of a point along the axes of its body, by rows of its displacement.
+pub(super) fn point_outputs(scene: &Shared, name: &str, rows: &[Vec<f64>; 3]) -> Vec<Output> {
     let UnitLabels { length, time, .. } = (&scene.units).into();
     let rates = [
         (Rate::Place, "displacement", length.to_owned()),
         (Rate::Velocity, "velocity", format!("{length}/{time}")),
         (Rate::Acceleration, "acceleration", format!("{length}/{time}²")),
     ];
-    let mut outputs = Vec::new();
-    for (rate, quantity, unit) in rates {
-        for (axis, channel) in along_axes(&format!("{name}.{quantity}"), &unit).into_iter().enumerate() {
-            outputs.push(Output::new(channel, rate, columns.iter().map(|column| column[axis]).collect()));
-        }
-    }
-    outputs
+    let of_rate = |(rate, quantity, unit): (Rate, &str, String)| {
+        let channels = along_axes(&format!("{name}.{quantity}"), &unit);
+        channels.into_iter().zip(rows).map(move |(channel, row)| Output::new(channel, rate, row.clone()))
+    };
+    rates.into_iter().flat_map(of_rate).collect()
 }
 
-/// Acceleration of a point relative to the support, along the axes of the body, by its displacement in each coordinate.
-pub(super) fn relative_outputs(scene: &Shared, name: &str, columns: &[Vector3<f64>]) -> Vec<Output> {
+/// Acceleration of a point relative to the support, along the axes of the body, by rows of its displacement.
+pub(super) fn relative_outputs(scene: &Shared, name: &str, rows: &[Vec<f64>; 3]) -> Vec<Output> {
     let channels = along_axes(&format!("{name}.acceleration_relative"), &UnitLabels::from(&scene.units).acceleration());
-    let row = |axis: usize| columns.iter().map(|column| column[axis]).collect();
-    let channels = channels.into_iter().enumerate();
-    channels.map(|(axis, channel)| Output::new(channel, Rate::Acceleration, row(axis))).collect()
-}
-
-/// Stress components of a point, body axes, by those of each modal displacement in each material there; `over` makes a row over the
-/// coordinates of one over the modes.
-pub(super) fn stress_outputs(
-    scene: &Shared,
-    name: &str,
-    materials: &[Vec<[f64; 6]>],
-    over: impl Fn(&[f64]) -> Vec<f64>,
-) -> Vec<Output> {
-    let unit = UnitLabels::from(&scene.units).stress();
-    let mut outputs = Vec::new();
-    for (number, shapes) in materials.iter().enumerate() {
-        let material = if materials.len() > 1 { format!("[{number}]") } else { String::new() };
-        for (component, letters) in STRESS.into_iter().enumerate() {
-            let of_modes: Vec<f64> = shapes.iter().map(|stress| stress[component]).collect();
-            let channel = Channel::new(format!("{name}.stress{material}.{letters}"), unit.clone());
-            outputs.push(Output::new(channel, Rate::Place, over(&of_modes)));
-        }
-    }
-    outputs
+    channels.into_iter().zip(rows).map(|(channel, row)| Output::new(channel, Rate::Acceleration, row.clone())).collect()
 }
 
 /// Names and units of the six components of a force and a moment.

@@ -13,8 +13,8 @@ use nalgebra::Vector3;
 use scene::Body;
 
 use super::channels::{
-    Channels, base_accelerations, input_channels, point_outputs, relative_outputs, stress_outputs, unit_of_coordinate,
-    wrench_channels,
+    BodyRows, Channels, base_accelerations, input_channels, over_columns, point_outputs, relative_outputs,
+    unit_of_coordinate, wrench_channels,
 };
 use super::settings::LinearSettings;
 use super::state::{State, damping_in_words};
@@ -68,13 +68,14 @@ pub(super) fn of_held(
         let is_mode = |i: usize| (r..r + nf).contains(&i);
         Mat::from_fn(n, n, |i, j| if is_mode(i) && is_mode(j) { matrix[(6 + i - r, 6 + j - r)] } else { 0.0 })
     };
-    let mut columns: Vec<Vec<f64>> = unit_forces
-        .iter()
-        .map(|unit| {
-            let of_rigid = rigid.iter().map(|motion| motion.force(unit));
-            of_rigid.chain(unit[6..].iter().copied()).chain(std::iter::repeat_n(0.0, d)).collect()
-        })
-        .collect();
+    // The displacement of a drive is none that the body sees.
+    let basis = Mat::from_fn(6 + nf, n, |i, j| match (j.checked_sub(r), i) {
+        (None, 0..6) => rigid[j].along(i),
+        (Some(mode), 6..) => f64::from(u8::from(mode == i - 6)),
+        _ => 0.0,
+    });
+    let over = |row: &[f64]| over_columns(row, &basis, 0);
+    let mut columns: Vec<Vec<f64>> = unit_forces.iter().map(|unit| over(unit)).collect();
     let mut inputs = input_channels(body, model, "");
     let usual_inputs = inputs.len();
     // Accelerations that an input gives all of the support, along the axes of the body: the first of a load that stands for them.
@@ -93,10 +94,9 @@ pub(super) fn of_held(
     let (stiffness, mut damping) = (of_modes(&rest.stiffness), of_modes(&rest.damping));
     let (mut outputs, mut relative) = (Vec::new(), Vec::new());
     let mut arms = Vec::new();
-    for (name, point) in &model.points {
-        let numbers = rigid.iter().map(|motion| motion.number).chain(6..6 + nf);
-        let shapes = numbers.map(|k| point.columns()[k]).chain(std::iter::repeat_n(Vector3::zeros(), d));
-        let shapes: Vec<Vector3<f64>> = shapes.collect();
+    let rows = BodyRows::new(body, model, modal_displacement, true);
+    for ((name, shapes), (_, point)) in rows.points().iter().zip(&model.points) {
+        let shapes = shapes.each_ref().map(|row| over(row));
         outputs.extend(point_outputs(body, name, &shapes));
         if has_base && !in_spin {
             relative.extend(relative_outputs(body, name, &shapes));
@@ -104,14 +104,7 @@ pub(super) fn of_held(
         arms.push(model.arm(point, modal_displacement));
     }
     let motions = outputs.len();
-    let of_stress = model.stress.as_ref().map_or(&[][..], |stress| stress.of_points());
-    for ((name, _), materials) in model.points.iter().zip(of_stress) {
-        let over = |row: &[f64]| {
-            let zeros = |count| std::iter::repeat_n(0.0, count);
-            zeros(r).chain(row[..nf].iter().copied()).chain(zeros(d)).collect()
-        };
-        outputs.extend(stress_outputs(body, name, materials, over));
-    }
+    outputs.extend(rows.stresses().into_iter().map(|(of, row)| Output::new(of, Rate::Place, over(&row))));
     let usual_outputs = outputs.len();
     let first_relative = outputs.len();
     outputs.extend(relative);

@@ -8,7 +8,9 @@ use model::Model;
 use nalgebra::Vector3;
 use scene::Scene;
 
-use super::channels::{Channels, input_channels, point_outputs, stress_outputs, unit_of_coordinate, wrench_channels};
+use super::channels::{
+    BodyRows, Channels, input_channels, over_columns, point_outputs, unit_of_coordinate, wrench_channels,
+};
 use super::settings::LinearSettings;
 use super::state::{State, damping_in_words};
 use super::system_spin::SystemSpin;
@@ -55,55 +57,26 @@ pub(super) fn of_system(
     let all = linear.basis.nrows();
     let (free, n) = (linear.size(), linear.size() + driven.len());
     let basis = Mat::from_fn(all, n, |i, j| if j < free { linear.basis[(i, j)] } else { driven[j - free][i] });
-    let over = |row: &[f64]| -> Vec<f64> { (0..n).map(|j| (0..all).map(|k| row[k] * basis[(k, j)]).sum()).collect() };
+    let over = |row: &[f64]| over_columns(row, &basis, 0);
 
     let mut inputs = Vec::new();
     let mut columns: Vec<Vec<f64>> = Vec::new();
     let mut outputs = Vec::new();
     let mut stresses = Vec::new();
     for (number, (model, state)) in models.iter().zip(steady.states()).enumerate() {
-        let given = &scene.bodies[number];
-        let own = linear.coordinates_of(number);
-        let name = given.name.as_ref().filter(|_| models.len() > 1);
-        let prefix = name.map_or_else(String::new, |name| format!("{name}."));
+        let (given, own) = (&scene.bodies[number], linear.coordinates_of(number));
         for unit in motion.system().bodies()[number].unit_forces(&state) {
             let mut column = vec![0.0; all];
             column[own.clone()].copy_from_slice(&unit);
             columns.push(column);
         }
-        inputs.extend(input_channels(given, model, &prefix));
-        let slopes = model.coordinate_slopes(&state.modal_displacement);
-        for (name, point) in &model.points {
-            let arm = model.arm(point, &state.modal_displacement);
-            // ρ + φ×x + Ψ δq, then over the independent coordinates.
-            let of_body: Vec<Vector3<f64>> = (0..own.len())
-                .map(|k| match k {
-                    0..3 => Vector3::ith(k, 1.0),
-                    3..6 => Vector3::ith(k - 3, 1.0).cross(&arm),
-                    _ => slopes.as_ref().map_or(point.columns()[k], |slopes| {
-                        point.columns()[6..].iter().zip(&slopes[k - 6]).map(|(shape, slope)| *shape * *slope).sum()
-                    }),
-                })
-                .collect();
-            let of_coordinate = |j: usize| -> Vector3<f64> {
-                of_body.iter().enumerate().map(|(k, column)| column * basis[(own.start + k, j)]).sum()
-            };
-            let columns: Vec<Vector3<f64>> = (0..n).map(of_coordinate).collect();
-            outputs.extend(point_outputs(given, &format!("{prefix}{name}"), &columns));
+        let rows = BodyRows::new(given, model, &state.modal_displacement, models.len() == 1);
+        inputs.extend(input_channels(given, model, &rows.prefix));
+        let over = |row: &[f64]| over_columns(row, &basis, own.start);
+        for (name, point) in rows.points() {
+            outputs.extend(point_outputs(given, &name, &point.each_ref().map(|row| over(row))));
         }
-        let of_stress = model.stress.as_ref().map_or(&[][..], |stress| stress.of_points());
-        for ((name, _), materials) in model.points.iter().zip(of_stress) {
-            let of_body = |row: &[f64]| {
-                let mut whole = vec![0.0; all];
-                (6..own.len()).for_each(|k| {
-                    whole[own.start + k] = slopes.as_ref().map_or(row[k - 6], |slopes| {
-                        row.iter().zip(&slopes[k - 6]).map(|(stress, slope)| stress * slope).sum()
-                    });
-                });
-                over(&whole)
-            };
-            stresses.extend(stress_outputs(given, &format!("{prefix}{name}"), materials, of_body));
-        }
+        stresses.extend(rows.stresses().into_iter().map(|(of, row)| Output::new(of, Rate::Place, over(&row))));
     }
     let units: UnitLabels = (&scene.units).into();
     for (number, joint) in joints.iter().enumerate() {
