@@ -1,5 +1,6 @@
 //! Commands, with their outputs.
 
+pub(crate) mod accuracy;
 pub(crate) mod advise;
 pub(crate) mod body;
 pub(crate) mod carried;

@@ -1,5 +1,6 @@
 //! Commands, as functions.
 
+pub mod accuracy;
 pub mod advise;
 pub mod campbell;
 pub mod check;

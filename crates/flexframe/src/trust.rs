@@ -40,7 +40,7 @@ pub(crate) fn of_run(
         let of_body = check.map(|check| check.bodies.get(number));
         lines.extend(full::lines(model.body.flexible() == 0, of_body, better, file).map(|line| line.of(name(number))));
     }
-    TrustCard::new(worst(lines))
+    TrustCard { of_bodies: lines.clone(), ..TrustCard::new(worst(lines)) }
 }
 
 /// The card in a results file with what a check of it has found since.

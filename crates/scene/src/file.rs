@@ -83,8 +83,9 @@ impl Body {
         ties: Option<&Document<'_>>,
         shared: Option<Arc<Shared>>,
     ) -> Result<Self, SceneError> {
-        let Sections { title, units, mut body, modes, effects, frame, initial, constraints, mut loads, time, output } =
-            crate::text::deserialize::from_document(document)?;
+        let sections = crate::text::deserialize::from_document(document)?;
+        let Sections { title, units, mut body, modes, effects, frame, initial, constraints, mut loads, .. } = sections;
+        let Sections { time, output, accuracy, .. } = sections;
 
         let check = Check::new(document, time.end);
         check.label("title", &title)?;
@@ -101,6 +102,7 @@ impl Body {
         check.effects_of_elements(&effects, &modes, &source)?;
         let time = check.time(&time, ties.is_some())?;
         check.fixed_effects(&effects, time.method)?;
+        check.accuracy(accuracy)?;
         let (rows, output) = check.output(output, &time, &source)?;
         let tied = ties.is_some_and(|ties| ties.ties(body_text.as_ref().map_or(ONLY_BODY, |text| text.name)));
         match &constraint {
@@ -113,6 +115,7 @@ impl Body {
             units,
             time,
             rows,
+            accuracy,
             path: document.path().to_owned(),
             text: document.text().into(),
             bodies_of_file: body_text.as_ref().map_or(1, |text| text.bodies),

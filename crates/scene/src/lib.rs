@@ -62,7 +62,7 @@ pub use methods::{METHODS, method_named};
 pub use scene::Scene;
 pub use schema::json_schema;
 pub use shared::{Shared, Time, Units};
-pub use text::assign::{AssignError, assign};
+pub use text::assign::{AssignError, assign, without};
 pub use text::files::tables_of;
 pub use text::place::Place;
 pub use text::points::{PointsError, points_of};

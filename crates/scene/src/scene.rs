@@ -23,8 +23,20 @@ use crate::tie::marker::GroundMarker;
 const MAX_BODIES: usize = 1000;
 
 /// Keys at the root of a scene of several bodies.
-const SHARED: [&str; 11] =
-    ["title", "units", "relaxed", BODIES, GROUND, "joints", "springs", "bushings", "couplings", "time", "output"];
+const SHARED: [&str; 12] = [
+    "title",
+    "units",
+    "relaxed",
+    BODIES,
+    GROUND,
+    "joints",
+    "springs",
+    "bushings",
+    "couplings",
+    "time",
+    "output",
+    "accuracy",
+];
 
 /// A scene of one body or several, which obeys every rule that needs no mesh.
 #[derive(Clone, Debug, PartialEq)]

@@ -51,6 +51,8 @@ pub(crate) struct Sections {
     /// The choice of what is written.
     #[serde(default)]
     pub output: OutputSection,
+    /// Error of the answer, between 0 and 1, for which `run` finds the settings.
+    pub accuracy: Option<f64>,
 }
 
 #[derive(Deserialize, JsonSchema)]

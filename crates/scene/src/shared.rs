@@ -20,6 +20,8 @@ pub struct Shared {
     /// multiples of this time. By default after each step, or after as many as give 5000 rows; with a tolerance, at each 500th
     /// of the end.
     pub rows: Rows,
+    /// Error of the answer, between 0 and 1, for which a run finds the settings; `None` leaves them as they are.
+    pub accuracy: Option<f64>,
     /// The scene file, as it was named to [`Scene::read`](crate::Scene::read) or [`Scene::parse`](crate::Scene::parse).
     pub path: PathBuf,
     /// The text of the scene file.

@@ -16,7 +16,11 @@ fn flexframe(arguments: &[&str]) -> Output {
 
 /// A rod that is held at one end and pushed across the other by a force, with its modes and how it is stepped; a mesh has the place of
 /// its tip beside it.
-fn scene(folder: &Path, name: &str, ([mesh, at], [modes, force, time, effects]): ([&str; 2], [&str; 4])) -> PathBuf {
+pub(crate) fn scene(
+    folder: &Path,
+    name: &str,
+    ([mesh, at], [modes, force, time, effects]): ([&str; 2], [&str; 4]),
+) -> PathBuf {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     fs::copy(root.join(mesh), folder.join(format!("{name}.msh"))).unwrap();
     let text = format!(
@@ -32,9 +36,9 @@ fn scene(folder: &Path, name: &str, ([mesh, at], [modes, force, time, effects]):
     path
 }
 
-const COLUMN: [&str; 2] = ["crates/verification/meshes/column.msh", "[1.0, 0.0, 0.0]"];
+pub(crate) const COLUMN: [&str; 2] = ["crates/verification/meshes/column.msh", "[1.0, 0.0, 0.0]"];
 /// An arc with an element across its wall.
-const COARSE: [&str; 2] = ["crates/verification/meshes/quarter_arc.msh", "[0.0, 0.8, 0.8]"];
+pub(crate) const COARSE: [&str; 2] = ["crates/verification/meshes/quarter_arc.msh", "[0.0, 0.8, 0.8]"];
 const LINEAR: &str = "large_deflection = false";
 const MANY: &str = "flexible = 6\nstatic_correction = true";
 const FINE: &str = "tolerance = 1e-6";

@@ -28,6 +28,16 @@ pub fn positive(text: &str) -> Result<f64, String> {
     finite(text).ok().filter(|number| *number > 0.0).ok_or_else(|| "expected a positive number".to_owned())
 }
 
+/// A relative error: a part, or per cent.
+pub fn accuracy(text: &str) -> Result<f64, String> {
+    let number = match text.strip_suffix('%') {
+        Some(percent) => finite(percent.trim_end()).map(|percent| percent / 100.0),
+        None => finite(text),
+    };
+    let accuracy = number.ok().filter(|accuracy| *accuracy > 0.0 && *accuracy < 1.0);
+    accuracy.ok_or_else(|| "expected an error above 0 and below 1, such as 1% or 0.01".to_owned())
+}
+
 /// Seconds that are worth measuring, and that someone may wait for.
 pub fn patience(text: &str) -> Result<Duration, String> {
     let seconds = finite(text).ok().filter(|seconds| (1e-3..=1e6).contains(seconds));

@@ -3,6 +3,7 @@
 //! Bodies that joints, springs or bushings tie together are an island with steps of its own; so is each body that nothing ties. Islands
 //! meet at the rows (`dynamics::Run`), which are written together.
 
+mod accuracy_report;
 mod balances;
 mod body;
 pub(crate) mod body_report;
@@ -26,6 +27,7 @@ use model::{BuildError, Model};
 use results::{Expected, Results, Resumed, Writer, unfinished};
 use scene::{Body, Scene, SceneError};
 
+pub use accuracy_report::{AccuracyReport, Round, StoppedBy};
 pub use balances::Balances;
 pub(crate) use balances::Monitor;
 pub use body::RunBody;
@@ -33,6 +35,7 @@ pub use body_report::BodyRunReport;
 pub use error::{RunError, RunFailure};
 pub use estimate::Estimate;
 pub use large_choice::LargeChoice;
+pub(crate) use large_choice::WORTH;
 pub(crate) use metadata::units;
 pub use metadata::{metadata, metadata_of_scene};
 pub use report::{RunReport, SystemReport, TableInUse};
@@ -124,11 +127,13 @@ fn conclude(
         let started = Instant::now();
         let results = writer.results()?;
         let checked = settings.check.then(|| {
-            let (path, builder, rows) = (&report.results, &settings.builder, CheckRows::Cheap);
+            let rows = if settings.accuracy.is_some() { CheckRows::Spread } else { CheckRows::Cheap };
+            let (path, builder) = (&report.results, &settings.builder);
             check_run(path, &results, scene, models, builder, &rows, |p| progress(RunProgress::Check(p)))
         });
         if let Some(Ok(checked)) = &checked {
-            match LargeChoice::better(&report.results, &results, (scene, models), &settings.builder, checked) {
+            let worth = settings.accuracy.map_or(large_choice::WORTH, large_choice::worth);
+            match LargeChoice::better(&results, (scene, models), &settings.builder, checked, worth) {
                 Ok(better) => report.large_choice = better,
                 Err(error) => report.warnings.push(format!("other large modes could not be checked: {error}")),
             }
@@ -165,7 +170,7 @@ fn conclude(
 }
 
 /// Refuses a run that could not write its files.
-fn check_files(scene: &Scene, folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
+pub(crate) fn check_files(scene: &Scene, folder: &Path, settings: &RunSettings) -> Result<(), RunError> {
     let path = results_path(scene, folder);
     let outputs = outputs_of_scene(scene, &settings.builder, settings.overwrite);
     outputs.spare(&path)?;

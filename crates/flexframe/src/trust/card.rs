@@ -76,11 +76,14 @@ pub struct TrustCard {
     pub lines: Vec<TrustLine>,
     /// Limits of the card.
     pub unseen: &'static str,
+    /// The lines of all bodies; none of a card that was read.
+    #[serde(skip)]
+    pub of_bodies: Vec<TrustLine>,
 }
 
 impl TrustCard {
     pub(super) fn new(lines: Vec<TrustLine>) -> Self {
-        Self { lines, unseen: UNSEEN }
+        Self { lines, unseen: UNSEEN, of_bodies: Vec::new() }
     }
 
     /// The card in a results file, whose name is for the commands in it. Where it has none, nothing is known.

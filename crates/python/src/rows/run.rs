@@ -32,7 +32,7 @@ pub(crate) fn run(
 ) -> PyResult<Bound<'_, PyAny>> {
     let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
     followed(py, [overwrite, large, check], builder, move |settings, progress| {
-        flexframe::run::run(&system, &folder, settings, progress).map(|(_, report)| report)
+        flexframe::accuracy::run(&system, &folder, settings, progress).map(|(_, report)| report)
     })
 }
 

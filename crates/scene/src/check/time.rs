@@ -121,6 +121,15 @@ impl Check<'_> {
         ))
     }
 
+    pub fn accuracy(&self, accuracy: Option<f64>) -> Result<(), SceneError> {
+        self.require(
+            accuracy.is_none_or(|accuracy| accuracy > 0.0 && accuracy < 1.0),
+            "accuracy",
+            "a number between 0 and 1, both excluded",
+            "give the error that the answer may have, e.g. `accuracy = 0.01` for a per cent",
+        )
+    }
+
     /// Refuses a length of time beyond the end of the run, or lost in rounding beside it.
     fn part_of_the_run(&self, key: &str, length: f64, end: f64, name: &str) -> Result<(), SceneError> {
         self.require(

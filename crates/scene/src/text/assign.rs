@@ -41,6 +41,21 @@ pub fn assign(text: &str, values: &[(String, Value)]) -> Result<String, AssignEr
     Ok(document.to_string())
 }
 
+/// The text of a scene without some keys, by their paths.
+pub fn without(text: &str, keys: &[String]) -> String {
+    let Ok(mut document) = text.parse::<DocumentMut>() else { return text.to_owned() };
+    for key in keys {
+        let Some(mut steps) = steps(key) else { continue };
+        let Some(Step::Key(last)) = steps.pop() else { continue };
+        let inner = steps.into_iter().try_fold(document.as_item_mut(), |item, step| match step {
+            Step::Key(key) => item.get_mut(key),
+            Step::Entry(index) => item.get_mut(index),
+        });
+        inner.and_then(Item::as_table_like_mut).map(|table| table.remove(&last));
+    }
+    document.to_string()
+}
+
 fn set(root: &mut Item, path: &str, value: &Value) -> Result<(), (String, String)> {
     const A_PATH: &str = "a path of keys of the scene, such as loads[0].amplitude";
     let mut item = root;
@@ -155,6 +170,12 @@ mod tests {
         let both = [("modes.flexible".to_owned(), Value::from(3)), ("modes.large".to_owned(), Value::from(2))];
         let table: toml::Table = assign("", &both).unwrap().parse().unwrap();
         assert_eq!((table["modes"]["flexible"].as_integer(), table["modes"]["large"].as_integer()), (Some(3), Some(2)));
+    }
+
+    #[test]
+    fn keys_are_taken_out_and_all_else_stays() {
+        let keys = ["time.end", "loads[0].at", "time.step", "output.every"].map(str::to_owned);
+        assert_eq!(without(TEXT, &keys), TEXT.replace("end = 1.0\n", "").replace("at = [1.0, 2.0]\n", ""));
     }
 
     #[test]

@@ -10,12 +10,17 @@ use rigid_kin::Attitude;
 
 use super::cost::affordable;
 
+/// Intervals between rows that are spread over a run.
+const SPREAD: usize = 7;
+
 /// Which rows are checked.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CheckRows {
     /// The rows at which a model is most likely to be wrong: the largest strain energy, the largest stress, the largest spin, the last.
     Worst,
-    /// As many of these, in this order, as cost no more than the reduction of the body did.
+    /// These, and rows that are spread over the run.
+    Spread,
+    /// As many of the worst, in this order, as cost no more than the reduction of the body did.
     Cheap,
     /// Rows by their numbers, from 0.
     Given(Vec<usize>),
@@ -56,6 +61,9 @@ pub(super) fn chosen(
     add(largest(count, |row| stress(of, row)), "largest stress");
     add(largest(count, |row| spin(of, row)), "largest spin");
     add(count.checked_sub(1), "last");
+    if *rows == CheckRows::Spread {
+        (1..SPREAD).for_each(|k| add(Some(k * count / SPREAD), "on the way"));
+    }
     if *rows == CheckRows::Cheap {
         chosen.truncate(affordable(model));
     }

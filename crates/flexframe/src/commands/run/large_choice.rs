@@ -3,8 +3,6 @@
 //! While a body is built nobody knows how far and how long each of its modes will swing. The check knows what a model is wrong by at the states of a
 //! run: other choices are held against the full body at the worst of them, and the best is told, or taken where the scene leaves it open.
 
-use std::path::Path;
-
 use diagnostic::Failure;
 use dynamics::{Effect, EffectMap};
 use model::{Builder, Model, Needs};
@@ -20,7 +18,9 @@ use crate::files::json;
 use crate::trust::{model_error, percent};
 
 /// Error of a model below which no other choice is looked for.
-const WORTH: f64 = 1e-2;
+pub(crate) const WORTH: f64 = 1e-2;
+/// The same, as a part of the accuracy that is asked for.
+const WORTH_OF_ACCURACY: f64 = 0.3;
 /// A choice is better where its error is below this part.
 const BETTER: f64 = 0.5;
 /// Large modes, and those that follow them, beyond which more are no better.
@@ -44,17 +44,22 @@ pub struct LargeChoice {
     pub before: f64,
 }
 
+/// Error of a model below which no other choice is looked for, where an accuracy is asked for.
+pub(super) fn worth(accuracy: f64) -> f64 {
+    WORTH_OF_ACCURACY * accuracy
+}
+
 impl LargeChoice {
-    /// The best other choice of the large modes of a lone body whose model the check found wrong by more than a per cent, if one is better.
+    /// The best other choice of the large modes of a lone body whose model the check found wrong by more than `worth`, if one is better.
     ///
     /// # Errors
     /// [`Failure`]: the check of a choice.
     pub(super) fn better(
-        file: &Path,
         results: &Results,
         (system, models): (&Scene, &[Model]),
         builder: &Builder,
         check: &CheckReport,
+        worth: f64,
     ) -> Result<Option<Self>, Failure> {
         let ([scene], [model], [BodyCheck { rows, .. }]) = (&system.bodies[..], models, &check.bodies[..]) else {
             return Ok(None);
@@ -62,7 +67,7 @@ impl LargeChoice {
         let error_of = |row: &RowCheck| model_error(std::slice::from_ref(row));
         let Some(worst) = rows.iter().max_by(|a, b| error_of(a).total_cmp(&error_of(b))) else { return Ok(None) };
         let before = error_of(worst);
-        if !(before >= WORTH && may_be_large(scene, model)) {
+        if !(before >= worth && may_be_large(scene, model)) {
             return Ok(None);
         }
         let candidates = candidates(scene, model, &rows::course(results, 0).swings);
@@ -85,8 +90,8 @@ impl LargeChoice {
             if built.body.circular_frequencies != model.body.circular_frequencies {
                 continue;
             }
-            let check = check_run(file, results, system, &[built], builder, &rows, |_| ())?;
-            let error = check.bodies.first().map_or(f64::INFINITY, |body| model_error(&body.rows));
+            let checked = check_run(&check.results, results, system, &[built], builder, &rows, |_| ())?;
+            let error = checked.bodies.first().map_or(f64::INFINITY, |body| model_error(&body.rows));
             if error < best.as_ref().map_or(BETTER * before, |best| best.error) {
                 best = Some(Self { large, following, error, before });
             }

@@ -165,6 +165,7 @@ impl<'a> Recorder<'a> {
             check: None,
             large_choice: None,
             large_is_chosen: false,
+            accuracy: None,
             trust: None,
             warnings,
             times,

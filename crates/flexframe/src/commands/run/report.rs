@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use scene::{Interpolation, Scene, TablePoints};
 use serde::Serialize;
 
+use super::accuracy_report::AccuracyReport;
 use super::body_report::BodyRunReport;
 use super::estimate::Estimate;
 use super::large_choice::LargeChoice;
@@ -58,6 +59,9 @@ pub struct RunReport {
     pub large_choice: Option<LargeChoice>,
     /// True if the run was made once more, with the large modes that the check of the first found better.
     pub large_is_chosen: bool,
+    /// The accuracy that was asked for, and the settings that were found for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<AccuracyReport>,
     /// The trust card; `None` where the results are only rows.
     pub trust: Option<TrustCard>,
     /// Assumptions that did not hold, with the name of the body where there are several.

@@ -47,6 +47,9 @@ impl fmt::Display for RunReport {
         if let Some(trust) = &self.trust {
             writeln!(f, "{trust}")?;
         }
+        if let Some(accuracy) = &self.accuracy {
+            writeln!(f, "{accuracy}")?;
+        }
         writeln!(f, "  time     {}", self.times)?;
         write!(f, "  results  {} ({} rows)", self.results.display(), self.rows)?;
         for warning in &self.warnings {

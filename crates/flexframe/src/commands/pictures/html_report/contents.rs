@@ -356,7 +356,8 @@ fn effect(effect: &EffectProperties) -> Effect {
 
 /// The trust card of the run.
 fn trust(file: &Path, run: &Metadata) -> Trust {
-    let TrustCard { lines, unseen } = TrustCard::of_file(run, &file.file_name().unwrap_or_default().to_string_lossy());
+    let TrustCard { lines, unseen, .. } =
+        TrustCard::of_file(run, &file.file_name().unwrap_or_default().to_string_lossy());
     let line = |results::TrustLine { place, body, error, meaning, known, next }| PageTrustLine {
         place,
         body: body.unwrap_or_default(),

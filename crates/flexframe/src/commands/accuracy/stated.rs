@@ -1,0 +1,165 @@
+//! The error that the trust card of a run states of each body, its points and its stress.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Vector3;
+use results::TrustLine;
+
+use crate::commands::check::report::{BodyCheck, RowCheck};
+use crate::commands::run::RunReport;
+use crate::trust::Place;
+
+/// A point that moves by less than this part of the largest displacement of its body counts against that part.
+const STILL: f64 = 1e-2;
+
+/// The error of a body.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct BodyError {
+    /// Its number in the scene.
+    pub body: usize,
+    /// The share of each place in the answer that is worst; `None` where it is not known.
+    pub shares: [Option<f64>; Place::ALL.len()],
+    /// The answer that is worst.
+    pub of: String,
+    /// What is not known, in words.
+    pub unknown: Option<String>,
+    /// True if the full body is unstable in a row, or may be.
+    pub unstable: bool,
+}
+
+impl BodyError {
+    /// The sum of the shares; `None` where one is not known.
+    pub fn whole(&self) -> Option<f64> {
+        self.shares.iter().copied().sum()
+    }
+
+    /// The same with what is not known as infinite.
+    pub fn at_most(&self) -> f64 {
+        self.whole().filter(|_| self.unknown.is_none()).unwrap_or(f64::INFINITY)
+    }
+
+    /// The share of a place; 0 where it is not known.
+    pub fn share(&self, place: Place) -> f64 {
+        self.shares[index(place)].unwrap_or(0.0)
+    }
+
+    /// The places, the largest share first.
+    pub fn order(&self) -> [Place; Place::ALL.len()] {
+        let mut places = Place::ALL;
+        places.sort_by(|a, b| self.share(*b).total_cmp(&self.share(*a)));
+        places
+    }
+}
+
+pub(super) fn index(place: Place) -> usize {
+    place as usize
+}
+
+/// The error of each body of a run that has a mesh, the worst first. `with_mesh`: their numbers.
+pub(super) fn errors(report: &RunReport, with_mesh: &[usize]) -> Vec<BodyError> {
+    let mut errors: Vec<BodyError> = with_mesh.iter().map(|body| of_body(report, *body)).collect();
+    errors.sort_by(|a, b| b.at_most().total_cmp(&a.at_most()));
+    errors
+}
+
+fn of_body(report: &RunReport, body: usize) -> BodyError {
+    let name = report.bodies.get(body).map(|body| body.name.as_str()).filter(|_| report.bodies.len() > 1);
+    let lines = report.trust.iter().flat_map(|card| &card.of_bodies);
+    let lines: Vec<&TrustLine> = lines.filter(|line| line.body.as_deref() == name).collect();
+    let line = |place: Place| lines.iter().find(|line| line.place == place.name());
+    let card = Place::ALL.map(|place| line(place).and_then(|line| line.error));
+    let checked = report.check.as_ref().and_then(|check| check.bodies.get(body));
+    let (shares, of) = worst(card, checked);
+    let not_known = Place::ALL.iter().find(|place| card[index(**place)].is_none());
+    let unsettled = checked.and_then(|checked| checked.rows.iter().find(|row| !row.state.is_settled));
+    let unknown = match (not_known, unsettled) {
+        (Some(place), _) => {
+            let words = line(*place).map_or_else(String::new, |line| match line.next.is_empty() {
+                true => line.meaning.clone(),
+                false => format!("{}; to do: {}", line.meaning, line.next),
+            });
+            Some(format!("the error of the {} is {words}", place.name()))
+        }
+        (None, Some(row)) => Some(format!(
+            "the error of the model at time {:.6} is not known: it is so large that the full body has not settled it",
+            row.state.time
+        )),
+        (None, None) => None,
+    };
+    let rows = checked.map_or(&[][..], |checked| &checked.rows);
+    let of = if let Some(name) = name { format!("{of} of body {name}") } else { of };
+    BodyError { body, shares, of, unknown, unstable: rows.iter().any(is_unstable) }
+}
+
+/// True if a vibration of the full body grows, or if it has lost stiffness and nothing tells whether its spin holds it.
+fn is_unstable(row: &RowCheck) -> bool {
+    let lost = row.state.negative_directions.is_some_and(|count| count > 0);
+    row.state.growth > 0.0 || (lost && row.state.frequencies.is_empty())
+}
+
+type Shares = [Option<f64>; Place::ALL.len()];
+
+/// The shares in the answer of a body that has the largest sum: its displacements, those of a point, its stress.
+fn worst(card: Shares, checked: Option<&BodyCheck>) -> (Shares, String) {
+    let mut worst = (card, "displacements".to_owned());
+    let [mesh, modes, steps, model] = [Place::Mesh, Place::Modes, Place::Steps, Place::Model].map(index);
+    let (Some(of_mesh), Some(of_steps), Some(of_modes), Some(of_model), Some(checked)) =
+        (card[mesh], card[steps], card[modes], card[model], checked)
+    else {
+        return worst;
+    };
+    let mut most = of_mesh + of_steps + of_modes + of_model;
+    let drift = checked.rows.iter().map(|row| row.state.drift).fold(0.0, f64::max);
+    let mut add = |of: String, of_mesh: f64, of_body: f64| {
+        if of_mesh + of_steps + of_body > most {
+            most = of_mesh + of_steps + of_body;
+            // In proportion to what the card has of them.
+            let known = of_modes + of_model;
+            let part = if known > 0.0 { of_modes / known } else { 0.5 };
+            let mut shares = card;
+            shares[mesh] = Some(of_mesh);
+            shares[modes] = Some(part * of_body);
+            shares[model] = Some((1.0 - part) * of_body);
+            worst = (shares, of);
+        }
+    };
+    for (name, error) in points(&checked.rows) {
+        add(format!("point {name}"), of_mesh, error.max(drift));
+    }
+    // The mesh line is an energy, of which the stress of elements is off by the root.
+    for (name, error) in stresses(&checked.rows) {
+        add(name, of_mesh.sqrt(), error.max(drift));
+    }
+    worst
+}
+
+/// The largest error of each point, over the largest displacement of it.
+fn points(rows: &[RowCheck]) -> BTreeMap<&str, f64> {
+    let least = STILL * rows.iter().map(|row| row.state.largest_displacement).fold(0.0, f64::max);
+    let each = rows.iter().flat_map(|row| &row.state.points);
+    let sizes = each.map(|point| {
+        let [error, size] = [point.error, point.displacement].map(|v| Vector3::from(v).norm());
+        (point.name.as_str(), [error, size])
+    });
+    over_largest(sizes, least)
+}
+
+/// The largest error of each stress that is asked for, over the largest of it.
+fn stresses(rows: &[RowCheck]) -> BTreeMap<String, f64> {
+    let each = rows.iter().filter_map(|row| row.state.stress.as_ref());
+    let sizes = each.flat_map(|stress| {
+        let points = stress.points.iter().map(|point| (format!("stress at {}", point.name), [point.error, point.full]));
+        points.chain(stress.body.map(|body| ("largest stress".to_owned(), [body.error, body.full])))
+    });
+    over_largest(sizes, 0.0)
+}
+
+fn over_largest<K: Ord>(sizes: impl Iterator<Item = (K, [f64; 2])>, least: f64) -> BTreeMap<K, f64> {
+    let mut largest: BTreeMap<K, [f64; 2]> = BTreeMap::new();
+    for (name, [error, size]) in sizes {
+        let of = largest.entry(name).or_default();
+        *of = [of[0].max(error), of[1].max(size)];
+    }
+    let ratio = |[error, size]: [f64; 2]| if error > 0.0 { error / size.max(least) } else { 0.0 };
+    largest.into_iter().map(|(name, of)| (name, ratio(of))).collect()
+}

@@ -1,0 +1,126 @@
+//! Runs to an accuracy that is asked for.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use flexframe::scene::{Scene, assign, without};
+use serde_json::Value;
+use toml::Table;
+
+use super::trust::{COARSE, COLUMN, scene};
+use crate::program::{done, flexframe};
+
+const FEW: &str = "flexible = 2\nstatic_correction = false";
+
+fn run(scene: &Path, more: &[&str]) -> Value {
+    let (folder, scene) = (scene.parent().unwrap().to_str().unwrap(), scene.to_str().unwrap());
+    serde_json::from_str(&done(&[&["run", scene, "-o", folder, "--json", "--overwrite"][..], more].concat())).unwrap()
+}
+
+/// The settings of a report, put into the scene as a person does it.
+fn paste(scene: &Path, settings: &str) -> PathBuf {
+    let removed: Vec<String> =
+        settings.lines().filter_map(|line| Some(line.strip_prefix("# without ")?.to_owned())).collect();
+    let table: Table = settings.parse().unwrap();
+    let of_table = |(table, keys): (String, toml::Value)| {
+        keys.as_table()
+            .unwrap()
+            .iter()
+            .map(|(key, value)| (format!("{table}.{key}"), value.clone()))
+            .collect::<Vec<_>>()
+    };
+    let keys: Vec<(String, toml::Value)> = table.into_iter().flat_map(of_table).collect();
+    let text = assign(&without(&fs::read_to_string(scene).unwrap(), &removed), &keys).unwrap();
+    let path = scene.with_file_name("pasted.toml");
+    fs::write(&path, text).unwrap();
+    path
+}
+
+/// Conserved: the settings that were found give the same numbers alone.
+#[test]
+fn settings_that_reach_an_accuracy_give_the_same_answer_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, accuracy, mended, described) in [
+        ("modes", "1%", "static shapes", (COLUMN, [FEW, "0.1", "tolerance = 1e-3", ""])),
+        (
+            "model",
+            "0.01",
+            "large modes",
+            (COLUMN, ["flexible = 4", "1.4", "tolerance = 1e-4", "large_deflection = false"]),
+        ),
+        ("steps", "1%", "tolerance 1e-3", (COLUMN, [FEW, "1e-3", "step = 0.25\nscheme = \"rkmk4\"", ""])),
+    ] {
+        let scene = scene(folder.path(), name, described);
+        let report = run(&scene, &["--accuracy", accuracy]);
+        let found = &report["accuracy"];
+        assert_eq!((&found["asked"], &found["reached"]), (&0.01.into(), &true.into()), "{found}");
+        assert!(found["stopped_by"].is_null() && found["stated"].as_f64().unwrap() < 0.01, "{found}");
+        let rounds = found["rounds"].as_array().unwrap();
+        let stated = |round: &Value| round["after"].as_f64().unwrap();
+        let kept: Vec<&Value> = rounds.iter().filter(|round| round["kept"] == true).collect();
+        assert!(kept.windows(2).all(|pair| pair[0]["after"] == pair[1]["before"]), "{found}");
+        assert!(stated(&rounds[0]) > 0.01 && stated(kept[kept.len() - 1]) < 0.01, "{found}");
+        assert!(rounds.iter().any(|round| round["change"].as_str().unwrap().contains(mended)), "{found}");
+        // No more than the card states.
+        let card = report["trust"]["lines"].as_array().unwrap().iter().map(|line| line["error"].as_f64().unwrap());
+        assert!(found["stated"].as_f64().unwrap() >= card.sum::<f64>() * (1.0 - 1e-12), "{report}");
+
+        let pasted = paste(&scene, found["settings"].as_str().unwrap());
+        let alone = run(&pasted, &[]);
+        let rows = |report: &Value| done(&["export", report["results"].as_str().unwrap(), "--csv", "-"]);
+        assert_eq!(rows(&report), rows(&alone), "{name}");
+        assert!(alone["accuracy"].is_null());
+    }
+}
+
+/// The mesh says so at once, and nothing is claimed; a key of the scene asks for the same.
+#[test]
+fn a_mesh_that_is_too_coarse_stops_the_search() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), "arc", (COARSE, ["flexible = 4", "0.1", "step = 0.05", ""]));
+    let text = fs::read_to_string(&scene).unwrap();
+    fs::write(&scene, format!("accuracy = 0.005\n{text}")).unwrap();
+    let report = run(&scene, &[]);
+    let found = &report["accuracy"];
+    assert_eq!(
+        (&found["asked"], &found["reached"], &found["stopped_by"]),
+        (&0.005.into(), &false.into(), &"mesh".into())
+    );
+    assert!(found["stated"].as_f64().unwrap() > 0.005, "{found}");
+    assert!(found["why"].as_str().unwrap().contains("of their size would do"), "{found}");
+    assert_eq!(found["rounds"].as_array().unwrap().len(), 1);
+    let warnings = report["warnings"].as_array().unwrap();
+    assert!(warnings.iter().any(|warning| warning.as_str().unwrap().contains("is not reached")), "{warnings:?}");
+    assert!(Scene::read(&scene).unwrap().accuracy == Some(0.005));
+
+    // Without the check there is no accuracy.
+    let report = run(&scene, &["--no-check"]);
+    assert!(report["accuracy"].is_null());
+    assert!(
+        report["warnings"].as_array().unwrap().iter().any(|warning| warning.as_str().unwrap().contains("not gone for"))
+    );
+}
+
+/// Equations with linear strain alone.
+#[test]
+fn linear_strain_stops_the_search() {
+    let folder = tempfile::tempdir().unwrap();
+    let paper = "step = 0.01\nformulation = \"paper\"";
+    let scene = scene(folder.path(), "linear", (COLUMN, ["flexible = 4", "1.4", paper, ""]));
+    let report = run(&scene, &["--accuracy", "1%"]);
+    assert_eq!(report["accuracy"]["stopped_by"], "linear-strain", "{}", report["accuracy"]);
+}
+
+#[test]
+fn a_scene_that_cannot_be_checked_is_refused_with_the_cure() {
+    let said = flexframe(&["run", "examples/pendulum.toml", "--accuracy", "1%"]);
+    let words = String::from_utf8_lossy(&said.stderr).into_owned();
+    assert!(
+        !said.status.success() && words.contains("a rigid body") && words.contains("give the body a mesh"),
+        "{words}"
+    );
+    for wrong in ["0", "100%", "a"] {
+        let said = flexframe(&["run", "examples/pendulum.toml", "--accuracy", wrong]);
+        assert!(String::from_utf8_lossy(&said.stderr).contains("such as 1% or 0.01"), "{wrong}");
+    }
+}
