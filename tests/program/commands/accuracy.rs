@@ -36,6 +36,15 @@ fn paste(scene: &Path, settings: &str) -> PathBuf {
     path
 }
 
+/// The rows of a report are those of the scene with its settings.
+#[track_caller]
+fn assert_same(report: &Value, scene: &Path) {
+    let alone = run(&paste(scene, report["accuracy"]["settings"].as_str().unwrap()), &[]);
+    let rows = |report: &Value| done(&["export", report["results"].as_str().unwrap(), "--csv", "-"]);
+    assert_eq!(rows(report), rows(&alone));
+    assert!(alone["accuracy"].is_null());
+}
+
 /// Conserved: the settings that were found give the same numbers alone.
 #[test]
 fn settings_that_reach_an_accuracy_give_the_same_answer_alone() {
@@ -65,12 +74,23 @@ fn settings_that_reach_an_accuracy_give_the_same_answer_alone() {
         let card = report["trust"]["lines"].as_array().unwrap().iter().map(|line| line["error"].as_f64().unwrap());
         assert!(found["stated"].as_f64().unwrap() >= card.sum::<f64>() * (1.0 - 1e-12), "{report}");
 
-        let pasted = paste(&scene, found["settings"].as_str().unwrap());
-        let alone = run(&pasted, &[]);
-        let rows = |report: &Value| done(&["export", report["results"].as_str().unwrap(), "--csv", "-"]);
-        assert_eq!(rows(&report), rows(&alone), "{name}");
-        assert!(alone["accuracy"].is_null());
+        assert_same(&report, &scene);
     }
+}
+
+/// Conserved: after runs that were taken back the results are those of the settings.
+#[test]
+fn a_search_that_is_stopped_leaves_the_best_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), "far", (COLUMN, ["flexible = 4", "1.4", "tolerance = 1e-4", ""]));
+    let report = run(&scene, &["--accuracy", "0.1%"]);
+    let found = &report["accuracy"];
+    assert_eq!((&found["reached"], &found["stopped_by"]), (&false.into(), &"model".into()), "{found}");
+    let rounds = found["rounds"].as_array().unwrap();
+    assert!(rounds.iter().filter(|round| round["kept"] == false).count() >= 2, "{found}");
+    let best = rounds.iter().rfind(|round| round["kept"] == true).unwrap();
+    assert_eq!(found["stated"], best["after"]);
+    assert_same(&report, &scene);
 }
 
 /// The mesh says so at once, and nothing is claimed; a key of the scene asks for the same.

@@ -165,6 +165,17 @@ impl Search<'_> {
         let settings = RunSettings { overwrite: self.settings.overwrite || overwrite, ..self.settings.clone() };
         let models = settings.builder.models(&scene, |p| progress(RunProgress::Build(p)))?;
         progress(RunProgress::Built);
+        for body in &self.with_mesh {
+            let (given, model) = (&scene.bodies[*body], &models[*body]);
+            let is_straight = model.meshed.as_ref().is_some_and(|meshed| meshed.reference.is_none());
+            // The run would be the one before.
+            if is_straight && keys.contains(&about(self.name(*body))) {
+                let help = "leave it out";
+                let refused =
+                    given.refuse("modes.about", "no rest that bends far", "a steady load or spin that does", help);
+                return Err(RunError::Build(refused.into()));
+            }
+        }
         let report = run_models(&scene, &models, self.folder, &settings, progress)?;
         let errors = errors(&report, &self.with_mesh);
         Ok(Found { scene, models, report, errors })
@@ -236,7 +247,8 @@ impl Search<'_> {
             let mut keys = self.keys.clone();
             put(&mut keys, change.keys(self.name(error.body)));
             let results = best.report.results.clone();
-            let place = kept.join("kept.h5");
+            // A name that a kept file may have still: of two links to one file a renaming leaves both.
+            let place = kept.join(format!("{}.h5", self.rounds.len()));
             let failed = |source| RunError::Folder { folder: kept.to_owned(), source };
             fs::hard_link(&results, &place).or_else(|_| fs::copy(&results, &place).map(|_| ())).map_err(failed)?;
             let started = Instant::now();
@@ -293,6 +305,7 @@ impl Search<'_> {
             modes: model.body.flexible() - model.static_shapes(),
             has_static_shapes: model.static_shapes() > 0,
             has_large_modes: !model.large_modes().is_empty(),
+            is_without_stiffening: given.effects.choices[Effect::GeometricStiffening] == Choice::Off,
             may_bend_far: given.method().abilities.large_deflection,
             better: better.map(|LargeChoice { large, following, .. }| (large.clone(), *following)),
             is_about_rest: given.modes.about.is_some(),
@@ -348,6 +361,11 @@ impl Search<'_> {
         };
         put(&mut self.keys, change.keys(body.name.as_deref()));
     }
+}
+
+/// The key of modes about a bent rest.
+fn about(body: Option<&str>) -> (String, Option<Value>) {
+    Change::BentRest.keys(body).swap_remove(0)
 }
 
 /// True if a run is so much better than another that its settings are worth it: what is not known is worse than all that is.

@@ -22,6 +22,7 @@ mod words;
 use std::path::Path;
 use std::time::Instant;
 
+use diagnostic::Failure;
 use dynamics::{Initial, Run};
 use model::{BuildError, Model};
 use results::{Expected, Results, Resumed, Writer, unfinished};
@@ -43,7 +44,8 @@ pub use settings::{RunProgress, RunSettings};
 pub use tied_report::{AssembledReport, HeldReport, StepLimitReport, TiedReport};
 pub use watch::{Watch, Watched};
 
-use crate::commands::check::checked_rows::check_run;
+use crate::commands::check::checked_rows::{CheckProgress, check_run};
+use crate::commands::check::report::CheckReport;
 use crate::commands::check::rows::CheckRows;
 use crate::drawn::{stored_bytes, stored_shapes};
 use crate::files::identity::{contents, identity_of_files};
@@ -127,9 +129,7 @@ fn conclude(
         let started = Instant::now();
         let results = writer.results()?;
         let checked = settings.check.then(|| {
-            let rows = if settings.accuracy.is_some() { CheckRows::Spread } else { CheckRows::Cheap };
-            let (path, builder) = (&report.results, &settings.builder);
-            check_run(path, &results, scene, models, builder, &rows, |p| progress(RunProgress::Check(p)))
+            checked(&report.results, &results, (scene, models), settings, |p| progress(RunProgress::Check(p)))
         });
         if let Some(Ok(checked)) = &checked {
             let worth = settings.accuracy.map_or(large_choice::WORTH, large_choice::worth);
@@ -167,6 +167,24 @@ fn conclude(
     writer.finish()?;
     report.times.add("writing", started.elapsed());
     Ok(report)
+}
+
+/// The check of a run: of the worst rows that cost little, or, where an accuracy is asked for, of all of them, and of rows on the way if none of
+/// these tells against it.
+fn checked(
+    file: &Path,
+    results: &Results,
+    (scene, models): (&Scene, &[Model]),
+    settings: &RunSettings,
+    mut progress: impl FnMut(CheckProgress),
+) -> Result<CheckReport, Failure> {
+    let mut of = |rows: &CheckRows| check_run(file, results, scene, models, &settings.builder, rows, &mut progress);
+    let Some(accuracy) = settings.accuracy else { return of(&CheckRows::Cheap) };
+    let mut found = of(&CheckRows::Worst)?;
+    if found.largest_error() < accuracy {
+        found.add(of(&CheckRows::OnTheWay)?);
+    }
+    Ok(found)
 }
 
 /// Refuses a run that could not write its files.
@@ -273,8 +291,13 @@ pub fn resume(
         Some(_) => recorder.take_up(&results)?,
         None => recorder.begin()?,
     }
-    let followed = recorder.follow(&scene, started, settings, &mut progress)?;
-    conclude(&scene, &models, settings, followed, progress)
+    let (mut report, writer) = recorder.follow(&scene, started, settings, &mut progress)?;
+    if scene.accuracy.is_some() {
+        let words =
+            "the search for the accuracy was cut off, and this run is as far as it came: run the scene again to go on";
+        report.warnings.push(words.to_owned());
+    }
+    conclude(&scene, &models, settings, (report, writer), progress)
 }
 
 /// The number of the files that a run reads; none for the rows of a sweep, which do not go on.

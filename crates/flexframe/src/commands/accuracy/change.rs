@@ -24,6 +24,8 @@ pub(super) enum Change {
     StaticShapes,
     /// This number of modes.
     Modes(usize),
+    /// The stiffening by stress that the scene has switched off.
+    Stiffening,
     /// The program's choice of large modes.
     LargeModes,
     /// These large modes, numbered from 1, and the most that follow them.
@@ -49,6 +51,8 @@ pub(super) struct Facts {
     pub modes: usize,
     pub has_static_shapes: bool,
     pub has_large_modes: bool,
+    /// True if the scene has switched the stiffening by stress off.
+    pub is_without_stiffening: bool,
     /// True if the method has large deflections.
     pub may_bend_far: bool,
     /// Other large modes that the check has found better.
@@ -154,11 +158,12 @@ fn changes(place: Place, facts: &Facts, accuracy: f64) -> Vec<Change> {
             }
         },
         Place::Model if !facts.may_bend_far => Vec::new(),
-        Place::Model if !facts.has_large_modes => vec![Change::LargeModes, Change::Modes(2 * facts.modes)],
         Place::Model => {
+            let stiffening = facts.is_without_stiffening.then_some(Change::Stiffening);
             let better = facts.better.clone().map(|(large, following)| Change::TheseLarge(large, following));
             let rest = (!facts.is_about_rest).then_some(Change::BentRest);
-            better.into_iter().chain(rest).chain([Change::Modes(2 * facts.modes)]).collect()
+            let large = if facts.has_large_modes { [better, rest] } else { [Some(Change::LargeModes), None] };
+            stiffening.into_iter().chain(large.into_iter().flatten()).chain([Change::Modes(2 * facts.modes)]).collect()
         }
     }
 }
@@ -193,6 +198,13 @@ fn stopped_by(place: Place, error: &BodyError, facts: &Facts) -> Stop {
             let cure = "take the conservative form, and large modes";
             (StoppedBy::LinearStrain, format!("linear strain: {share} is what the equations leave out; {cure}"))
         }
+        Place::Model if error.drift >= 0.99 * error.share(place) => {
+            let cure = "a shorter run, or damping";
+            (
+                StoppedBy::Model,
+                format!("the model: its vibrations come out of step by up to {share} by the end; {cure}"),
+            )
+        }
         Place::Model => {
             let cure = "smaller loads, or a body in parts that joints hold together";
             (StoppedBy::Model, format!("the model: {share}; the body bends further than its large modes hold; {cure}"))
@@ -215,6 +227,7 @@ impl Change {
             Self::Modes(count) => {
                 vec![(of_body("modes.most"), None), (of_body("modes.flexible"), Some(number(*count)))]
             }
+            Self::Stiffening => vec![(of_body("effects.geometric_stiffening"), Some(Value::Boolean(true)))],
             Self::LargeModes => vec![large(true)],
             Self::NoneLarge => vec![large(false)],
             Self::TheseLarge(modes, following) => vec![
@@ -251,6 +264,7 @@ impl Change {
         match self {
             Self::StaticShapes => "static shapes".to_owned(),
             Self::Modes(count) => format!("{count} modes"),
+            Self::Stiffening => "stiffening by stress".to_owned(),
             Self::LargeModes => "large modes".to_owned(),
             Self::NoneLarge => "no large modes".to_owned(),
             Self::TheseLarge(modes, following) => format!("large modes {modes:?}, {following} that follow"),
@@ -271,6 +285,7 @@ mod tests {
             modes: 4,
             has_static_shapes: false,
             has_large_modes: false,
+            is_without_stiffening: false,
             may_bend_far: true,
             better: None,
             is_about_rest: false,
@@ -286,7 +301,7 @@ mod tests {
     /// Shares of mesh, modes, steps and model.
     fn error(shares: [f64; 4]) -> BodyError {
         let of = "displacements".to_owned();
-        BodyError { body: 0, shares: shares.map(Some), of, unknown: None, unstable: false }
+        BodyError { body: 0, shares: shares.map(Some), of, unknown: None, drift: 0.0, unstable: false }
     }
 
     #[test]
@@ -300,6 +315,8 @@ mod tests {
         assert_eq!(chosen([1e-3, 1e-3, 0.02, 1e-3], &shaped, &tried), Ok(Change::Tolerance(1e-4)));
         let of_model = [1e-3, 1e-3, 1e-3, 0.3];
         assert_eq!(chosen(of_model, &facts(), &tried), Ok(Change::LargeModes));
+        let soft = Facts { is_without_stiffening: true, ..facts() };
+        assert_eq!(chosen(of_model, &soft, &tried), Ok(Change::Stiffening));
         let large = Facts { has_large_modes: true, better: Some((vec![1, 2], 3)), ..facts() };
         assert_eq!(chosen(of_model, &large, &tried), Ok(Change::TheseLarge(vec![1, 2], 3)));
         for vain in [Change::TheseLarge(Vec::new(), 0), Change::BentRest] {

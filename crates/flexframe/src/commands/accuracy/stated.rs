@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 use results::TrustLine;
 
-use crate::commands::check::report::{BodyCheck, RowCheck};
+use crate::commands::check::report::RowCheck;
 use crate::commands::run::RunReport;
 use crate::trust::Place;
 
@@ -21,8 +21,10 @@ pub(super) struct BodyError {
     pub shares: [Option<f64>; Place::ALL.len()],
     /// The answer that is worst.
     pub of: String,
-    /// What is not known, in words.
+    /// The part that is not known, in words.
     pub unknown: Option<String>,
+    /// The part of the model by which vibrations come out of step.
+    pub drift: f64,
     /// True if the full body is unstable in a row, or may be.
     pub unstable: bool,
 }
@@ -69,26 +71,27 @@ fn of_body(report: &RunReport, body: usize) -> BodyError {
     let line = |place: Place| lines.iter().find(|line| line.place == place.name());
     let card = Place::ALL.map(|place| line(place).and_then(|line| line.error));
     let checked = report.check.as_ref().and_then(|check| check.bodies.get(body));
-    let (shares, of) = worst(card, checked);
+    let rows = checked.map_or(&[][..], |checked| &checked.rows);
+    let drift = rows.iter().map(|row| row.state.drift).fold(0.0, f64::max);
+    let (shares, of) = worst(card, rows, drift);
     let not_known = Place::ALL.iter().find(|place| card[index(**place)].is_none());
-    let unsettled = checked.and_then(|checked| checked.rows.iter().find(|row| !row.state.is_settled));
+    let unsettled = rows.iter().find(|row| !row.state.is_settled);
     let unknown = match (not_known, unsettled) {
         (Some(place), _) => {
-            let words = line(*place).map_or_else(String::new, |line| match line.next.is_empty() {
-                true => line.meaning.clone(),
-                false => format!("{}; to do: {}", line.meaning, line.next),
+            let words = line(*place).map_or_else(String::new, |line| {
+                let why = line.meaning.trim_start_matches("not known: ");
+                if line.next.is_empty() { why.to_owned() } else { format!("{why}; to do: {}", line.next) }
             });
-            Some(format!("the error of the {} is {words}", place.name()))
+            Some(format!("an error that is not known, of the {}: {words}", place.name()))
         }
         (None, Some(row)) => Some(format!(
-            "the error of the model at time {:.6} is not known: it is so large that the full body has not settled it",
+            "an error that is not known, of the model at time {:.6}: it is so large that the full body has not settled it",
             row.state.time
         )),
         (None, None) => None,
     };
-    let rows = checked.map_or(&[][..], |checked| &checked.rows);
     let of = if let Some(name) = name { format!("{of} of body {name}") } else { of };
-    BodyError { body, shares, of, unknown, unstable: rows.iter().any(is_unstable) }
+    BodyError { body, shares, of, unknown, drift, unstable: rows.iter().any(is_unstable) }
 }
 
 /// True if a vibration of the full body grows, or if it has lost stiffness and nothing tells whether its spin holds it.
@@ -100,16 +103,15 @@ fn is_unstable(row: &RowCheck) -> bool {
 type Shares = [Option<f64>; Place::ALL.len()];
 
 /// The shares in the answer of a body that has the largest sum: its displacements, those of a point, its stress.
-fn worst(card: Shares, checked: Option<&BodyCheck>) -> (Shares, String) {
+fn worst(card: Shares, rows: &[RowCheck], drift: f64) -> (Shares, String) {
     let mut worst = (card, "displacements".to_owned());
     let [mesh, modes, steps, model] = [Place::Mesh, Place::Modes, Place::Steps, Place::Model].map(index);
-    let (Some(of_mesh), Some(of_steps), Some(of_modes), Some(of_model), Some(checked)) =
-        (card[mesh], card[steps], card[modes], card[model], checked)
+    let (Some(of_mesh), Some(of_steps), Some(of_modes), Some(of_model)) =
+        (card[mesh], card[steps], card[modes], card[model])
     else {
         return worst;
     };
     let mut most = of_mesh + of_steps + of_modes + of_model;
-    let drift = checked.rows.iter().map(|row| row.state.drift).fold(0.0, f64::max);
     let mut add = |of: String, of_mesh: f64, of_body: f64| {
         if of_mesh + of_steps + of_body > most {
             most = of_mesh + of_steps + of_body;
@@ -123,11 +125,11 @@ fn worst(card: Shares, checked: Option<&BodyCheck>) -> (Shares, String) {
             worst = (shares, of);
         }
     };
-    for (name, error) in points(&checked.rows) {
+    for (name, error) in points(rows) {
         add(format!("point {name}"), of_mesh, error.max(drift));
     }
     // The mesh line is an energy, of which the stress of elements is off by the root.
-    for (name, error) in stresses(&checked.rows) {
+    for (name, error) in stresses(rows) {
         add(name, of_mesh.sqrt(), error.max(drift));
     }
     worst

@@ -93,6 +93,17 @@ impl fmt::Display for CheckReport {
 }
 
 impl CheckReport {
+    /// The largest error of a row, against the largest displacements of the run.
+    pub(crate) fn largest_error(&self) -> f64 {
+        let worst = self.bodies.iter().filter_map(BodyCheck::worst);
+        worst.map(|row| row.state.error_of_largest).fold(0.0, f64::max)
+    }
+
+    /// Adds further rows of the same bodies.
+    pub(crate) fn add(&mut self, more: Self) {
+        self.bodies.iter_mut().zip(more.bodies).for_each(|(body, more)| body.rows.extend(more.rows));
+    }
+
     /// The name of a body before what is said of it, where there are several.
     fn head(&self, body: &BodyCheck) -> String {
         if self.bodies.len() > 1 { format!("body {}: ", body.name) } else { String::new() }

@@ -12,14 +12,16 @@ use super::cost::affordable;
 
 /// Intervals between rows that are spread over a run.
 const SPREAD: usize = 7;
+/// The reason of such a row.
+const ON_THE_WAY: &str = "on the way";
 
 /// Which rows are checked.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CheckRows {
     /// The rows at which a model is most likely to be wrong: the largest strain energy, the largest stress, the largest spin, the last.
     Worst,
-    /// These, and rows that are spread over the run.
-    Spread,
+    /// Rows that are spread over the run, but for these.
+    OnTheWay,
     /// As many of the worst, in this order, as cost no more than the reduction of the body did.
     Cheap,
     /// Rows by their numbers, from 0.
@@ -61,8 +63,9 @@ pub(super) fn chosen(
     add(largest(count, |row| stress(of, row)), "largest stress");
     add(largest(count, |row| spin(of, row)), "largest spin");
     add(count.checked_sub(1), "last");
-    if *rows == CheckRows::Spread {
-        (1..SPREAD).for_each(|k| add(Some(k * count / SPREAD), "on the way"));
+    if *rows == CheckRows::OnTheWay {
+        (1..SPREAD).for_each(|k| add(Some(k * count / SPREAD), ON_THE_WAY));
+        chosen.retain(|(_, why)| why == &[ON_THE_WAY]);
     }
     if *rows == CheckRows::Cheap {
         chosen.truncate(affordable(model));

@@ -18,7 +18,7 @@ pub struct AccuracyReport {
     pub of: String,
     /// True if the stated error is below the one asked for, and no row tells against it.
     pub reached: bool,
-    /// What has stopped the search; `None` where the accuracy is reached.
+    /// The end of a search that has not reached it; `None` where the accuracy is reached.
     pub stopped_by: Option<StoppedBy>,
     /// The same in words, with a cure.
     pub why: Option<String>,
@@ -49,7 +49,7 @@ pub struct Round {
     pub seconds: f64,
 }
 
-/// What stops a search.
+/// The end of a search that has not reached the accuracy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StoppedBy {
@@ -88,13 +88,13 @@ impl fmt::Display for AccuracyReport {
         }
         self.left_out.iter().for_each(|body| report.line("", format!("without {body}")));
         let rounds = |of: fn(&Round) -> String| self.rounds.iter().map(of);
-        let known = |error: Option<f64>| error.map_or_else(|| "not known".to_owned(), percent);
+        let after = |round: &Round| round.after.map(percent).or_else(|| round.kept.then(|| "not known".to_owned()));
         let table = Table::new("", None)
             .titled("what was chosen, what it bought, what it cost")
             .all()
             .text_only("change", Form::Plain, rounds(|round| round.change.clone()))
             .text_only("before", Form::Plain, self.rounds.iter().map(|round| round.before.map(percent)))
-            .text_only("stated", Form::Plain, self.rounds.iter().map(|round| known(round.after)))
+            .text_only("stated", Form::Plain, self.rounds.iter().map(after))
             .text_only("most by", Form::Plain, rounds(|round| round.largest.clone()))
             .text_only("", Form::Plain, rounds(|round| if round.kept { "" } else { "taken back" }.to_owned()))
             .text_only("seconds", Form::Fixed(2), self.rounds.iter().map(|round| round.seconds));

@@ -20,7 +20,7 @@ use crate::trust::{model_error, percent};
 /// Error of a model below which no other choice is looked for.
 pub(crate) const WORTH: f64 = 1e-2;
 /// The same, as a part of the accuracy that is asked for.
-const WORTH_OF_ACCURACY: f64 = 0.3;
+const WORTH_OF_ACCURACY: f64 = 0.5;
 /// A choice is better where its error is below this part.
 const BETTER: f64 = 0.5;
 /// Large modes, and those that follow them, beyond which more are no better.
