@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use diagnostic::{Diagnosis, Failure, Kind};
+use report::quantity;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -69,6 +70,8 @@ struct Comparison {
     take: Option<Take>,
     #[serde(default = "one")]
     factor: f64,
+    #[serde(default)]
+    offset: f64,
     miss: Option<String>,
     #[serde(skip)]
     line: usize,
@@ -118,6 +121,8 @@ pub(super) struct Quantity {
     pub place: ValuePlace,
     /// What the value of the report is multiplied by, to be in the unit of the source.
     pub factor: f64,
+    /// What is added after that.
+    pub offset: f64,
     /// Reason of a known miss.
     pub miss: Option<String>,
     /// The line of the comparison in the file, from 1.
@@ -298,7 +303,7 @@ impl Comparison {
             };
             let label = match (&self.at, self.published.all().len()) {
                 (_, 1) => self.quantity.clone(),
-                (Some(at), _) => format!("{} at {}", self.quantity, at.all()[k]),
+                (Some(at), _) => format!("{} at {}", self.quantity, quantity(at.all()[k])),
                 (None, _) => format!("{} {}", self.quantity, k + 1),
             };
             let tolerance = match (self.relative, self.absolute) {
@@ -312,6 +317,7 @@ impl Comparison {
                 tolerance,
                 place,
                 factor: self.factor,
+                offset: self.offset,
                 miss: self.miss.clone(),
                 line: self.line,
             }

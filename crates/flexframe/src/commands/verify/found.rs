@@ -48,7 +48,7 @@ impl Answer {
                 })?
             }
         };
-        Ok(quantity.factor * value)
+        Ok(quantity.factor * value + quantity.offset)
     }
 
     /// The relative error by the mesh that the report states of a natural frequency of a body.

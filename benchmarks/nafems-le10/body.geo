@@ -1,0 +1,31 @@
+// A quarter of an elliptic plate, 0.6 thick, its middle plane at z = 0, in layers of prisms that are cut into tetrahedra.
+SetFactory("OpenCASCADE");
+Ellipse(1) = {0, 0, -0.3, 3.25, 2.75};
+Ellipse(2) = {0, 0, -0.3, 2, 1};
+Curve Loop(1) = {1};
+Curve Loop(2) = {2};
+Plane Surface(1) = {1, 2};
+Rectangle(2) = {0, 0, -0.3, 4, 4};
+BooleanIntersection(3) = { Surface{1}; Delete; }{ Surface{2}; Delete; };
+low[] = Extrude {0, 0, 0.3} { Surface{3}; Layers{2}; };
+high[] = Extrude {0, 0, 0.3} { Surface{low[0]}; Layers{2}; };
+e = 0.01;
+// The curve of the outer edge in the middle plane: all there but the inner edge and the two straight ones.
+middle[] = Curve In BoundingBox{-e, -e, -e, 4, 4, e};
+middle[] -= Curve In BoundingBox{-e, -e, -e, 4, e, e};
+middle[] -= Curve In BoundingBox{-e, -e, -e, e, 4, e};
+middle[] -= Curve In BoundingBox{-e, -e, -e, 2 + e, 1 + e, e};
+outer[] = Surface In BoundingBox{-e, -e, -1, 4, 4, 1};
+outer[] -= Surface In BoundingBox{-e, -e, -1, 4, e, 1};
+outer[] -= Surface In BoundingBox{-e, -e, -1, e, 4, 1};
+outer[] -= Surface In BoundingBox{-e, -e, -1, 2 + e, 1 + e, 1};
+outer[] -= Surface In BoundingBox{-e, -e, -1, 4, 4, -0.3 + e};
+outer[] -= Surface In BoundingBox{-e, -e, -e, 4, 4, e};
+outer[] -= Surface In BoundingBox{-e, -e, 0.3 - e, 4, 4, 1};
+Physical Volume("plate") = {low[1], high[1]};
+Physical Surface("top") = {high[0]};
+Physical Surface("outer") = {outer[]};
+Physical Curve("middle") = {middle[]};
+Mesh.MeshSizeMin = 0.3;
+Mesh.MeshSizeMax = 0.3;
+Mesh.ElementOrder = 2;
