@@ -101,7 +101,7 @@ impl<T> Several<T> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Take {
-    /// Of the last row.
+    /// The last one.
     Last,
     /// The largest.
     Largest,
@@ -119,9 +119,9 @@ pub(super) struct Quantity {
     pub published: f64,
     pub tolerance: Tolerance,
     pub place: ValuePlace,
-    /// What the value of the report is multiplied by, to be in the unit of the source.
+    /// Factor of the value of the report, which brings it into the unit of the source.
     pub factor: f64,
-    /// What is added after that.
+    /// Added after that.
     pub offset: f64,
     /// Reason of a known miss.
     pub miss: Option<String>,
