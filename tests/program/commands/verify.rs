@@ -54,7 +54,7 @@ fn a_folder_is_a_case() {
     let text = String::from_utf8(found.stdout).unwrap();
     assert!(found.status.success() && text.contains("2 numbers pass"), "{text}");
     assert!(fs::read_to_string(out.join("benchmarks.md")).unwrap().contains("**rectangle**, A rectangle"));
-    assert!(out.join("rectangle/srs.csv").is_file() && out.join("rectangle/page.md").is_file());
+    assert!(["srs.csv", "page.md", "figure1.svg"].iter().all(|file| out.join("rectangle").join(file).is_file()));
     let listed = done(&["verify", "--list", "--cases", folder.path().to_str().unwrap()]);
     assert!(listed.contains("rectangle  shock  quick  A rectangle"), "{listed}");
 }

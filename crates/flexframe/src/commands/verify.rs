@@ -12,6 +12,7 @@ use ::report::Report;
 use diagnostic::{Failure, Kind};
 use serde_json::Value as Json;
 
+use crate::files::write_error::WriteError;
 pub use case::Case;
 use found::Answer;
 use outcome::{Outcome, Verdict};
@@ -63,20 +64,21 @@ pub fn verify(
     for (done, case) in cases.iter().enumerate() {
         progress(VerifyProgress { case: &case.name, done, total: cases.len() });
         let of_case = folder.join(&case.name);
+        std::fs::create_dir_all(&of_case).map_err(WriteError::of(&of_case))?;
         let answer = run(&case.words(&of_case)).map(|report| Answer { report, folder: of_case.clone() });
-        let compared = answer.and_then(|answer| Outcome::all(case, &answer));
-        let compared = match compared {
+        let compared = answer.and_then(|answer| Ok((Outcome::all(case, &answer)?, Some(answer))));
+        let (compared, answer) = match compared {
             Err(failure) if failure.diagnosis().kind == Kind::Stopped => return Err(failure),
             Err(failure) => {
                 let none = Outcome::none(case, &failure);
                 let is_known = none.iter().all(|outcome| outcome.verdict() == Verdict::KnownMiss);
                 first_failure = first_failure.or_else(|| (!is_known).then_some(failure));
-                none
+                (none, None)
             }
             Ok(compared) => compared,
         };
         if pages {
-            page::write(case, &compared, &of_case)?;
+            page::write(case, &compared, answer.as_ref(), &of_case)?;
         }
         outcomes.push(compared);
     }

@@ -11,17 +11,18 @@ use toml::Spanned;
 
 /// The name of the file in the folder of a case.
 const FILE: &str = "case.toml";
-/// Commands that have a report of numbers, and true of those that write a folder of files.
-const COMMANDS: [(&str, bool); 9] = [
-    ("run", true),
-    ("modes", false),
-    ("campbell", true),
-    ("frf", true),
-    ("psd", true),
-    ("srs", true),
-    ("shock", false),
-    ("gradient", false),
-    ("fit", false),
+/// Commands that have a report of numbers, and the file of those that write one; an empty name is a folder of files.
+const COMMANDS: [(&str, Option<&str>); 10] = [
+    ("run", Some("")),
+    ("modes", None),
+    ("campbell", Some("")),
+    ("linearize", Some("linear.json")),
+    ("frf", Some("")),
+    ("psd", Some("")),
+    ("srs", Some("")),
+    ("shock", None),
+    ("gradient", None),
+    ("fit", None),
 ];
 const CURE: &str = "docs/how-to/verify.md has a case with its keys";
 
@@ -114,7 +115,10 @@ pub(super) enum Take {
 /// A published value and its place in the answer.
 #[derive(Debug, Clone)]
 pub(super) struct Quantity {
+    /// Its name, with the place or the number of its value where there are several.
     pub label: String,
+    /// Its name alone.
+    pub name: String,
     pub unit: String,
     pub published: f64,
     pub tolerance: Tolerance,
@@ -145,6 +149,16 @@ pub(super) enum ValuePlace {
     Report(String),
     /// A column of the results file of a run, or of a CSV file of the command, and which of its numbers.
     Column { table: Option<String>, column: String, component: Option<usize>, row: Row },
+}
+
+impl ValuePlace {
+    /// The value that the first column has in the row, if it is chosen so.
+    pub fn row(&self) -> Option<f64> {
+        match self {
+            Self::Column { row: Row::At(at), .. } => Some(*at),
+            _ => None,
+        }
+    }
 }
 
 /// A row of a column.
@@ -188,7 +202,7 @@ impl Case {
         case.name = name.to_owned();
         case.folder = folder;
         let line = |key: &str| text.lines().position(|line| line.starts_with(key)).map_or(1, |line| line + 1);
-        if case.write_option().is_none() {
+        if case.output().is_none() {
             let wrong = Kind::Input.of(&path).line(line("command")).key("command").found(&case.command);
             let known: Vec<&str> = COMMANDS.iter().map(|(name, _)| *name).collect();
             return Err(wrong.expected(format!("a command line of {}", known.join(", "))).help(CURE).into());
@@ -201,10 +215,10 @@ impl Case {
         Ok(case)
     }
 
-    /// True if its command writes files, by `--output`; none if it is no command of a case.
-    fn write_option(&self) -> Option<bool> {
+    /// The file that its command writes, by `--output`; none if it is no command of a case.
+    fn output(&self) -> Option<Option<&'static str>> {
         let command = self.command.split_whitespace().next()?;
-        COMMANDS.iter().find(|(name, _)| *name == command).map(|(_, writes)| *writes)
+        COMMANDS.iter().find(|(name, _)| *name == command).map(|(_, file)| *file)
     }
 
     /// The command line, which writes its files to a folder.
@@ -214,8 +228,8 @@ impl Case {
             if file.is_file() { file.into() } else { word.into() }
         };
         let mut words: Vec<OsString> = self.command.split_whitespace().map(word).collect();
-        if self.write_option() == Some(true) {
-            words.extend(["--overwrite".into(), "--output".into(), folder.into()]);
+        if let Some(Some(file)) = self.output() {
+            words.extend(["--overwrite".into(), "--output".into(), folder.join(file).into()]);
         }
         words
     }
@@ -234,6 +248,13 @@ impl Case {
     /// All compared values.
     pub(super) fn quantities(&self) -> impl Iterator<Item = Quantity> {
         self.compare.iter().flat_map(|comparison| comparison.get_ref().quantities())
+    }
+}
+
+impl Quantity {
+    /// A value of the report in the unit of the source.
+    pub fn in_its_unit(&self, value: f64) -> f64 {
+        self.factor * value + self.offset
     }
 }
 
@@ -312,6 +333,7 @@ impl Comparison {
             };
             Quantity {
                 label,
+                name: self.quantity.clone(),
                 unit: self.unit.clone(),
                 published: *published,
                 tolerance,

@@ -19,36 +19,63 @@ pub(super) struct Answer {
 }
 
 /// A column and the one that numbers its rows.
+#[derive(Default)]
 struct Column {
     first: Vec<f64>,
     values: Vec<f64>,
 }
 
+/// The refusal of a comparison at one of its keys.
+fn wrong(case: &Case, quantity: &Quantity, key: &str, found: &str, expected: String) -> Failure {
+    let wrong = Kind::Input.of(case.file()).line(quantity.line).key(format!("compare.{key}"));
+    wrong.found(found).expected(expected).into()
+}
+
 impl Answer {
     /// The value of a quantity, in the unit of its source.
     pub fn value(&self, case: &Case, quantity: &Quantity) -> Result<f64, Failure> {
-        let wrong = |key: &str, found: &str, expected: String| {
-            let wrong = Kind::Input.of(case.file()).line(quantity.line).key(format!("compare.{key}"));
-            Failure::from(wrong.found(found).expected(expected))
-        };
+        let wrong = |key, found: &str, expected| wrong(case, quantity, key, found, expected);
         let value = match &quantity.place {
             ValuePlace::Report(path) => {
                 let found = at_path(&self.report, path).map_err(|known| wrong("value", path, known))?;
                 found.as_f64().ok_or_else(|| wrong("value", path, format!("a number; there is {}", short(found))))?
             }
-            ValuePlace::Column { table, column, component, row } => {
-                let of = match table {
-                    Some(table) => self.of_table(table, column),
-                    None => self.of_results(column, *component),
-                };
-                let of = of.map_err(|known| wrong("column", column, known))?;
+            ValuePlace::Column { column, row, .. } => {
+                let of = self.column(case, quantity)?;
                 of.row(*row).ok_or_else(|| match row {
                     Row::At(at) => wrong("at", &at.to_string(), of.range()),
                     Row::Take(_) => wrong("column", column, "a column with numbers".to_owned()),
                 })?
             }
         };
-        Ok(quantity.factor * value + quantity.offset)
+        Ok(quantity.in_its_unit(value))
+    }
+
+    /// The points of a quantity of a column: place of the row, and value in the unit of the source.
+    pub fn curve(&self, case: &Case, quantity: &Quantity) -> Vec<(f64, f64)> {
+        let Ok(Column { first, values }) = self.column(case, quantity) else { return Vec::new() };
+        first.into_iter().zip(values.into_iter().map(|value| quantity.in_its_unit(value))).collect()
+    }
+
+    /// Name of the numbers of the rows of a quantity's column.
+    pub fn first_heading(&self, quantity: &Quantity) -> String {
+        match &quantity.place {
+            ValuePlace::Column { table: Some(table), .. } => {
+                let text = std::fs::read_to_string(self.folder.join(table)).unwrap_or_default();
+                text.split(',').next().unwrap_or_default().to_owned()
+            }
+            _ => "time".to_owned(),
+        }
+    }
+
+    /// The column of a quantity; empty for a value of the report.
+    fn column(&self, case: &Case, quantity: &Quantity) -> Result<Column, Failure> {
+        let ValuePlace::Column { table, column, component, .. } = &quantity.place else { return Ok(Column::default()) };
+        let of = match table {
+            Some(table) => self.of_table(table, column),
+            None => self.of_results(column, *component),
+        };
+        of.map_err(|known| wrong(case, quantity, "column", column, known))
     }
 
     /// The relative error by the mesh that the report states of a natural frequency of a body.

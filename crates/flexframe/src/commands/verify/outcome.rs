@@ -64,12 +64,6 @@ impl Outcome {
         most
     }
 
-    /// The quantity with its unit.
-    pub fn labelled(&self) -> String {
-        let Quantity { label, unit, .. } = &self.quantity;
-        if unit.is_empty() { label.clone() } else { format!("{label}, {unit}") }
-    }
-
     /// The verdict on it.
     pub fn verdict(&self) -> Verdict {
         match (self.difference(), &self.quantity.miss) {
@@ -107,6 +101,11 @@ fn rounded(value: f64) -> String {
         Ok(value) if (1e-3..1e4).contains(&value.abs()) => quantity(value),
         _ => text,
     }
+}
+
+/// A name with its unit.
+pub(super) fn labelled(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name}, {unit}") }
 }
 
 /// The first words of a source.

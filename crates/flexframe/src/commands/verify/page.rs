@@ -3,21 +3,29 @@
 use std::path::Path;
 
 use diagnostic::Failure;
+use figures::{LineChart, Scale, Series, Stroke};
 use report::quantity;
 use whole_file::write_whole;
 
 use super::case::Case;
-use super::outcome::{Outcome, Verdict};
+use super::found::Answer;
+use super::outcome::{Outcome, Verdict, labelled};
 use crate::files::write_error::WriteError;
 
 /// The page of all cases.
 const ALL: &str = "benchmarks.md";
 
-/// Writes the page of a case, and its scene beside it.
-pub(super) fn write(case: &Case, outcomes: &[Outcome], folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(WriteError::of(folder))?;
+/// Writes the page of a case with its figures, and its scene beside it.
+pub(super) fn write(case: &Case, outcomes: &[Outcome], answer: Option<&Answer>, folder: &Path) -> Result<(), Failure> {
     let path = folder.join("page.md");
-    let page = format!("# {}\n\n{}\n{}", case.title, about(case, outcomes), table(&[(case, outcomes)]));
+    let mut page = format!("# {}\n\n{}\n{}", case.title, about(case, outcomes), table(&[(case, outcomes)]));
+    for (number, of) in outcomes.chunk_by(|a, b| a.quantity.line == b.quantity.line).enumerate() {
+        if let Some(chart) = answer.and_then(|answer| chart(case, of, answer)) {
+            let name = format!("figure{}", number + 1);
+            chart.save(folder.join(&name))?;
+            page += &format!("\n![{}]({name}.svg)\n", of[0].quantity.name);
+        }
+    }
     write_whole(&path, page).map_err(WriteError::of(&path))?;
     if let Some(scene) = case.scene() {
         let copy = folder.join(scene.file_name().unwrap_or("scene.toml".as_ref()));
@@ -25,6 +33,25 @@ pub(super) fn write(case: &Case, outcomes: &[Outcome], folder: &Path) -> Result<
         write_whole(&copy, text).map_err(WriteError::of(&copy))?;
     }
     Ok(())
+}
+
+/// Values of a column at several of its rows: theirs as points, ours as a line.
+fn chart(case: &Case, outcomes: &[Outcome], answer: &Answer) -> Option<LineChart> {
+    let theirs = outcomes.iter().filter_map(|of| Some((of.quantity.place.row()?, of.quantity.published)));
+    let theirs: Vec<(f64, f64)> = theirs.collect();
+    let first = &outcomes.first().filter(|_| theirs.len() > 1)?.quantity;
+    Some(LineChart {
+        title: case.title.clone(),
+        x_label: answer.first_heading(first),
+        y_label: labelled(&first.name, &first.unit),
+        x_scale: Scale::Linear,
+        y_scale: Scale::Linear,
+        series: vec![
+            Series { label: "flexframe".to_owned(), points: answer.curve(case, first), stroke: Stroke::Solid },
+            Series { label: "published".to_owned(), points: theirs, stroke: Stroke::Rings },
+        ],
+        reference: None,
+    })
 }
 
 /// Writes the page of all cases, by their kinds.
@@ -71,12 +98,21 @@ fn table(cases: &[(&Case, &[Outcome])]) -> String {
             .to_owned();
     for (case, of) in cases.iter().flat_map(|(case, of)| of.iter().map(move |of| (case, of))) {
         let (Some(ours), Some(difference)) = (of.ours, of.difference()) else {
-            table += &format!("| {} | {} | {} | | | | no answer |\n", case.name, of.labelled(), of.quantity.published);
+            table += &format!(
+                "| {} | {} | {} | | | | no answer |\n",
+                case.name,
+                labelled(&of.quantity.label, &of.quantity.unit),
+                of.quantity.published
+            );
             continue;
         };
         let [difference, most] = [difference, of.tolerance()].map(|value| of.in_words(value));
-        let (label, theirs, ours, verdict) =
-            (of.labelled(), of.quantity.published, quantity(ours), of.verdict().name());
+        let (label, theirs, ours, verdict) = (
+            labelled(&of.quantity.label, &of.quantity.unit),
+            of.quantity.published,
+            quantity(ours),
+            of.verdict().name(),
+        );
         table += &format!("| {} | {label} | {theirs} | {ours} | {difference} | {most} | {verdict} |\n", case.name);
     }
     table
