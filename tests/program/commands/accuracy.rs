@@ -8,7 +8,7 @@ use serde_json::Value;
 use toml::Table;
 
 use super::trust::{COARSE, COLUMN, scene};
-use crate::program::{done, flexframe};
+use crate::program::{done, flexframe, json};
 
 const FEW: &str = "flexible = 2\nstatic_correction = false";
 
@@ -143,4 +143,24 @@ fn a_scene_that_cannot_be_checked_is_refused_with_the_cure() {
         let said = flexframe(&["run", "examples/pendulum.toml", "--accuracy", wrong]);
         assert!(String::from_utf8_lossy(&said.stderr).contains("such as 1% or 0.01"), "{wrong}");
     }
+}
+
+/// Regression only: the names of the table. The settings of a row are those of its search, and finer ones than the mesh has are told.
+#[test]
+fn a_price_list_has_settings_and_times_for_each_accuracy() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), "list", (COARSE, [FEW, "0.1", "tolerance = 1e-3", ""]));
+    let out = folder.path().join("out");
+    let arguments = ["cost", scene.to_str().unwrap(), "--accuracies", "0.1%,2%", "-o", out.to_str().unwrap()];
+    let report = json(&arguments);
+    let rows = report["accuracies"].as_array().unwrap();
+    let asked: Vec<f64> = rows.iter().map(|row| row["asked"].as_f64().unwrap()).collect();
+    assert_eq!(asked, [0.02, 0.001]);
+    assert!(rows[0]["stated"].as_f64().unwrap() < 0.02 && rows[0]["stopped_by"].is_null(), "{report}");
+    assert!(rows[0]["settings"].as_str().unwrap().contains("static_correction=true"), "{report}");
+    assert!(rows.iter().all(|row| row["seconds"].as_f64().unwrap() > 0.0), "{report}");
+    assert_eq!(rows[1]["stopped_by"], "mesh", "{report}");
+    assert!(report["warnings"][0].as_str().unwrap().contains("0.10 % is not reached"), "{report}");
+    let files = report["files"].as_array().unwrap();
+    assert!(files.len() == 4 && files.iter().all(|file| Path::new(file.as_str().unwrap()).is_file()), "{files:?}");
 }

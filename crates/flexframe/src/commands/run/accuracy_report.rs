@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::report::{Form, Report, Table};
 use crate::trust::percent;
@@ -50,8 +50,7 @@ pub struct Round {
 }
 
 /// The end of a search that has not reached the accuracy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StoppedBy {
     /// The elements.
     Mesh,
@@ -69,6 +68,28 @@ pub enum StoppedBy {
     NotKnown,
     /// The number of runs.
     Rounds,
+}
+
+impl StoppedBy {
+    /// Its name in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mesh => "mesh",
+            Self::Modes => "modes",
+            Self::Steps => "steps",
+            Self::LinearStrain => "linear-strain",
+            Self::Model => "model",
+            Self::Instability => "instability",
+            Self::NotKnown => "not-known",
+            Self::Rounds => "rounds",
+        }
+    }
+}
+
+impl Serialize for StoppedBy {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.name().serialize(serializer)
+    }
 }
 
 impl fmt::Display for AccuracyReport {
