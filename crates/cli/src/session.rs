@@ -102,7 +102,11 @@ impl Session {
         let Self { bar, taken, .. } = self;
         drop(bar);
         match taken {
-            Some(taken) => Ok(taken.set(serde_json::to_value(report).map_err(CliError::from)?).unwrap_or_default()),
+            Some(taken) => {
+                // It is set once: each command has one report.
+                let _ = taken.set(serde_json::to_value(report).map_err(CliError::from)?);
+                Ok(())
+            }
             None => output::print(report, json),
         }
     }

@@ -7,7 +7,7 @@ use figures::{LineChart, Scale, Series, Stroke};
 use report::quantity;
 use whole_file::write_whole;
 
-use super::case::Case;
+use super::case::{Case, Quantity};
 use super::found::Answer;
 use super::outcome::{Outcome, Verdict, labelled};
 use crate::files::write_error::WriteError;
@@ -18,8 +18,14 @@ const ALL: &str = "benchmarks.md";
 /// Writes the page of a case with its figures, and its scene beside it.
 pub(super) fn write(case: &Case, outcomes: &[Outcome], answer: Option<&Answer>, folder: &Path) -> Result<(), Failure> {
     let path = folder.join("page.md");
-    let mut page = format!("# {}\n\n{}\n{}", case.title, about(case, outcomes), table(&[(case, outcomes)]));
-    for (number, of) in outcomes.chunk_by(|a, b| a.quantity.line == b.quantity.line).enumerate() {
+    let mut page = format!(
+        "# {}\n\n{}\n\n`flexframe {}`\n\n{}",
+        case.title,
+        about(case, outcomes),
+        case.command,
+        table(&[(case, outcomes)])
+    );
+    for (number, of) in outcomes.chunk_by(same_comparison).enumerate() {
         if let Some(chart) = answer.and_then(|answer| chart(case, of, answer)) {
             let name = format!("figure{}", number + 1);
             chart.save(folder.join(&name))?;
@@ -71,7 +77,7 @@ pub(super) fn write_all(cases: &[Case], outcomes: &[Vec<Outcome>], folder: &Path
         let of_kind: Vec<(&Case, &[Outcome])> = all().filter(|(case, _)| case.kind == kind).collect();
         let about: String = of_kind
             .iter()
-            .map(|(case, of)| format!("\n* **{}**, {}. {}", case.name, case.title, about(case, of).trim_end()))
+            .map(|(case, of)| format!("\n* **{}**, {}. {}", case.name, case.title, about(case, of)))
             .collect();
         page += &format!("\n## {}\n\n{}{about}\n", capitalised(kind), table(&of_kind));
     }
@@ -81,7 +87,7 @@ pub(super) fn write_all(cases: &[Case], outcomes: &[Vec<Outcome>], folder: &Path
 
 /// Source, notes and reasons of misses, each ending in a stop.
 fn about(case: &Case, outcomes: &[Outcome]) -> String {
-    let Case { source, note, command, .. } = case;
+    let Case { source, note, .. } = case;
     let mut reasons: Vec<String> = Vec::new();
     for of in outcomes.iter().filter(|of| of.verdict() != Verdict::Pass) {
         let reason = of.failure.as_ref().or(of.quantity.miss.as_ref());
@@ -89,33 +95,40 @@ fn about(case: &Case, outcomes: &[Outcome]) -> String {
     }
     let all = [source, note].into_iter().chain(&reasons).filter(|words| !words.is_empty());
     let sentences: Vec<String> = all.map(|words| format!("{}.", words.trim_end_matches('.'))).collect();
-    format!("{} `{command}`\n", sentences.join(" "))
+    sentences.join(" ")
 }
 
+/// A row for each comparison: all its values, and the largest difference.
 fn table(cases: &[(&Case, &[Outcome])]) -> String {
     let mut table =
-        "| case | quantity | theirs | ours | difference | tolerance | |\n|---|---|---:|---:|---:|---:|---|\n"
-            .to_owned();
-    for (case, of) in cases.iter().flat_map(|(case, of)| of.iter().map(move |of| (case, of))) {
-        let (Some(ours), Some(difference)) = (of.ours, of.difference()) else {
-            table += &format!(
-                "| {} | {} | {} | | | | no answer |\n",
-                case.name,
-                labelled(&of.quantity.label, &of.quantity.unit),
-                of.quantity.published
-            );
-            continue;
+        "| case | quantity | theirs | ours | off by | tolerance | |\n|---|---|---|---|---:|---:|---|\n".to_owned();
+    let all = cases.iter().flat_map(|(case, of)| of.chunk_by(same_comparison).map(move |of| (case, of)));
+    for (case, of) in all {
+        let Quantity { name, unit, .. } = &of[0].quantity;
+        let listed = |value: &dyn Fn(&Outcome) -> String| of.iter().map(value).collect::<Vec<_>>().join(", ");
+        let theirs = listed(&|of| of.quantity.published.to_string());
+        let ours = listed(&|of| of.ours.map_or("none".to_owned(), quantity));
+        let worst = of.iter().max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(&of[0]);
+        let difference = worst.difference().map(|value| worst.in_words(value)).unwrap_or_default();
+        let missed = of.iter().filter(|of| of.verdict() != Verdict::Pass).count();
+        let verdict = match (missed, of.len()) {
+            (0, _) => "pass".to_owned(),
+            (_, 1) => worst.verdict().name().to_owned(),
+            (missed, all) => format!("{missed} of {all}: {}", worst.verdict().name()),
         };
-        let [difference, most] = [difference, of.tolerance()].map(|value| of.in_words(value));
-        let (label, theirs, ours, verdict) = (
-            labelled(&of.quantity.label, &of.quantity.unit),
-            of.quantity.published,
-            quantity(ours),
-            of.verdict().name(),
-        );
+        let (label, most) = (labelled(name, unit), worst.in_words(worst.tolerance()));
         table += &format!("| {} | {label} | {theirs} | {ours} | {difference} | {most} | {verdict} |\n", case.name);
     }
     table
+}
+
+fn same_comparison(a: &Outcome, b: &Outcome) -> bool {
+    a.quantity.line == b.quantity.line
+}
+
+/// Size of a difference; no answer is the largest.
+fn size(of: &Outcome) -> f64 {
+    of.difference().map_or(f64::INFINITY, f64::abs)
 }
 
 fn capitalised(word: &str) -> String {
