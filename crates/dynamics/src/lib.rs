@@ -100,10 +100,10 @@ pub use system::run::setup::{Assembled, ShapeLimit, SystemSetup};
 pub use tolerance::allowance::ErrorEstimate;
 pub use tolerance::{ErrorKinds, ErrorMeasure, StatedError};
 pub use vibration::loaded::{AtRest, LoadedError, LoadedMode};
-pub use vibration::steady_spin::{EigenError, SpinMode, SteadySpin};
+pub use vibration::steady_spin::SteadySpin;
 pub use vibration::system::{
-    BodyStiffening, CommonSpin, Linearization, ReactionRows, Rotor, RotorError, ScaledEquations, Spring, SteadyError,
-    SteadyState, StiffenedMode, SystemMode, SystemParticipation, TurningJoint, Unbalance, Vibrations,
+    BodyStiffening, CommonSpin, Linearization, ReactionRows, Rotor, RotorError, ScaledEquations, SpinMode, Spring,
+    SteadyError, SteadyState, StiffenedMode, SystemMode, SystemParticipation, TurningJoint, Unbalance, Vibrations,
 };
 
 /// Crates whose types are in the interface.

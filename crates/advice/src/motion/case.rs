@@ -81,7 +81,7 @@ pub enum AdviceError {
     },
     /// An eigenvalue problem without an answer.
     #[error("{0}")]
-    Eigen(#[from] dynamics::EigenError),
+    Eigen(#[from] dynamics::SteadyError),
 }
 
 impl Case<'_> {

@@ -17,7 +17,7 @@ use crate::error::StepError;
 use crate::observation::Observation;
 use crate::state::State;
 use crate::vibration::loaded::{LoadedError, LoadedMode};
-use crate::vibration::steady_spin::EigenError;
+use crate::vibration::system::error::SteadyError;
 
 impl ConservativeBody {
     /// The motion at a state, and that of `points`: its accelerations, its reaction.
@@ -62,7 +62,7 @@ impl ConservativeBody {
                 jacobian[(row, column)] = (after[*at] - before[*at]) / (2.0 * size);
             }
         }
-        let eigenvalues: Vec<c64> = jacobian.eigenvalues().map_err(|_| EigenError { size: places.len() })?;
+        let eigenvalues: Vec<c64> = jacobian.eigenvalues().map_err(|_| SteadyError::Numbers)?;
         let mut modes: Vec<LoadedMode> = eigenvalues
             .into_iter()
             .filter(|root| root.im > 0.0 || (root.im == 0.0 && root.re >= 0.0))

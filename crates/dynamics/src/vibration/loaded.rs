@@ -25,9 +25,9 @@ use crate::conservative::ConservativeBody;
 use crate::equations::Equations;
 use crate::error::{SetupError, StepError};
 use crate::state::State;
-use crate::vibration::steady_spin::EigenError;
 use crate::vibration::system::body::BodyTerms;
 use crate::vibration::system::configuration::BodyConfiguration;
+use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::tie::stiffnesses;
 
 /// A part of the frequency that growth must exceed to be more than rounding.
@@ -55,7 +55,7 @@ pub enum LoadedError {
     Rates(#[from] StepError),
     /// The eigenvalue problem has no answer.
     #[error("{0}")]
-    Eigen(#[from] EigenError),
+    Eigen(#[from] SteadyError),
     /// The start is none of this body.
     #[error("{0}")]
     Setup(#[from] SetupError),
@@ -143,7 +143,7 @@ impl ConservativeBody {
         } else {
             of_modes(&self.still_at(initial, &vec![0.0; self.flexible()], 0.0)?.0.stiffness)
         };
-        let eigenvalues: Vec<c64> = squares.eigenvalues().map_err(|_| EigenError { size: self.flexible() })?;
+        let eigenvalues: Vec<c64> = squares.eigenvalues().map_err(|_| SteadyError::Numbers)?;
         let mut modes: Vec<LoadedMode> = eigenvalues
             .into_iter()
             .map(|square| {

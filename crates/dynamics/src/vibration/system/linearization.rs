@@ -86,6 +86,26 @@ impl Linearization {
         })
     }
 
+    /// Modes of unit mass of a body whose frame is given: K beside Λ, and C.
+    pub(crate) fn of_modes(circular_frequencies: &[f64], mut stiffness: Mat<f64>, damping: Mat<f64>) -> Self {
+        let size = circular_frequencies.len();
+        let strain: Vec<f64> = circular_frequencies.iter().map(|omega| omega * omega).collect();
+        strain.iter().enumerate().for_each(|(k, strain)| stiffness[(k, k)] += strain);
+        Self {
+            basis: Mat::identity(size, size),
+            stiffness,
+            damping,
+            rigid: 0,
+            unsprung: 0,
+            strain_floor: 0.0,
+            magnitudes: [0.0; 2],
+            first: vec![0, size],
+            strain,
+            masses: vec![Mat::identity(size, size)],
+            springs: Vec::new(),
+        }
+    }
+
     /// Holders of elastic energy beside the bodies, in the order of [`SystemMode::elastic`](crate::SystemMode).
     pub fn springs(&self) -> impl Iterator<Item = Spring> {
         self.springs.iter().map(|(spring, _)| *spring)

@@ -15,10 +15,10 @@ use nalgebra::{Matrix3, Vector3};
 use crate::system::marker::Marker;
 use crate::system::radau::SystemMotion;
 use crate::system::stage::{put, vector};
-use crate::vibration::steady_spin::SpinMode;
 use crate::vibration::system::configuration::{CommonSpin, Configuration};
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::mode::SystemMode;
+use crate::vibration::system::spin_mode::SpinMode;
 use crate::vibration::system::steady::{SteadyState, check_spin};
 use crate::vibration::system::terms::{Terms, along, springs};
 
