@@ -11,7 +11,6 @@ use flexframe::outputs::{OutputError, Written};
 use scene::{Flexible, Scene};
 
 use crate::arguments::values::{angular_velocity, finite, mode_count};
-use crate::cli_error::CliError;
 use crate::output;
 use crate::scene_input::SceneInput;
 
@@ -112,7 +111,7 @@ pub struct FolderArgs {
 
 impl FolderArgs {
     /// Refuses standard output.
-    pub fn check(&self) -> Result<(), CliError> {
+    pub fn check(&self) -> Result<(), Failure> {
         output::require_file("--output", self.output.as_deref())
     }
 

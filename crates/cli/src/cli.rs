@@ -5,13 +5,12 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
-use diagnostic::Failure;
-use diagnostic::Kind;
+use diagnostic::{Failure, Kind};
 use flexframe::failure::FailureReport;
 use model::{Builder, Cache};
 use toml::Value;
 
-use crate::cli_error::{self, CliError};
+use crate::cli_error;
 use crate::commands::{
     advise, campbell, check, cost, fmu, linear, modes, new, paper, pictures, reduce, resume, run, sweep, verify,
 };
@@ -106,7 +105,7 @@ pub fn main() -> ExitCode {
             Err(FailureReport::new(message, Kind::Usage.alone()))
         }
         // The help or the version was asked for.
-        Err(asked) => output::written(asked.print()).map_err(|error| FailureReport::of(&error)),
+        Err(asked) => output::written(asked.print()).map_err(|error| FailureReport::of(&*error)),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -134,7 +133,10 @@ fn execute(cli: Cli, json: bool) -> Result<(), Failure> {
 }
 
 fn command(cli: Cli, json_errors: bool, builder: Builder) -> Result<(), Failure> {
-    let signals = Signals::listen(json_errors).map_err(CliError::Signals)?;
+    let signals = Signals::listen(json_errors).map_err(|error| {
+        let help = "allow the program another thread and a few open files";
+        Kind::Io.alone().help(help).says(format!("cannot listen to signals: {error}"))
+    })?;
     threads::start(cli.threads)?;
     execute_command(cli.command, Session { builder, signals, bar: Bar::new(json_errors), json_errors, taken: None })
 }

@@ -4,49 +4,26 @@ use std::error::Error;
 use std::io;
 use std::iter::successors;
 
-use diagnostic::{Diagnosis, Diagnostic, Kind};
+use diagnostic::{Diagnosis, Diagnostic, Failure, Kind};
 use flexframe::failure::FailureReport;
 use scene::{SceneError, text_of};
 use toml::Value;
 
-/// An error of the command line, the terminal or the threads.
-#[derive(Debug, thiserror::Error)]
-pub enum CliError {
-    /// An option has replaced what the scene says, and is refused.
-    #[error("{option}: found {found}, expected {expected}\n = {help}")]
-    Option { option: &'static str, found: String, expected: String, help: String },
-    /// RAYON_NUM_THREADS is not a number of threads.
-    #[error(
-        "the environment variable RAYON_NUM_THREADS: found \"{found}\", expected a number from 1 to {most}\n = \
-         correct it, remove it, or give --threads"
-    )]
-    ThreadsVariable { found: String, most: u16 },
-    /// The system gives no threads.
-    #[error("{} cannot be started: {reason}\n = ask for fewer with --threads", match count {
-        Some(count) => format!("{count} threads"),
-        None => "the threads, one for each core,".to_owned(),
-    })]
-    Threads { count: Option<u16>, reason: String },
-    /// Signals cannot be listened to.
-    #[error("cannot listen to signals: {0}; allow the program another thread and a few open files")]
-    Signals(#[source] io::Error),
-    /// Standard output takes nothing.
-    #[error(
-        "standard output cannot be written: {0}\n = send it where there is room; files that the command has written are \
-         complete"
-    )]
-    Output(#[source] io::Error),
-    /// A port that somebody else has, or may not be had.
-    #[error(
-        "port {port} of 127.0.0.1 cannot be taken: {source}\n = leave --port out, so that one that is free is taken"
-    )]
-    Port { port: u16, source: io::Error },
-    /// The folder for a run that is played.
-    #[error("{0}")]
-    Folder(#[source] io::Error),
-    /// The summary has no form in JSON.
-    #[error("the summary cannot be written as JSON: {0}\n = leave --json out, and please report this")]
-    Json(#[from] serde_json::Error),
+/// The refusal of an option that has replaced what the scene says, or of its value.
+pub fn option(option: &str, found: impl Into<String>, expected: impl Into<String>, help: impl Into<String>) -> Failure {
+    Kind::Usage.alone().key(option).found(found).expected(expected).help(help).into()
+}
+
+/// The error of standard output that takes nothing.
+pub fn standard_output(error: &io::Error) -> Failure {
+    let help = "send it where there is room; files that the command has written are complete";
+    Kind::Io.of("standard output").help(help).says(format!("cannot be written: {error}"))
+}
+
+/// The error of a summary that has no form in JSON.
+pub fn no_json(error: &serde_json::Error) -> Failure {
+    let help = "leave --json out, and please report this";
+    Kind::Run.alone().help(help).says(format!("the summary cannot be written as JSON: {error}"))
 }
 
 /// The failure of any error that ends a command, in which values were set on the command line.
@@ -77,21 +54,4 @@ fn of_set_value(error: &dyn Diagnostic, set: &[(String, Value)]) -> Option<Failu
     let moved = refused.at_line_of(&text_of(&place.file).ok().filter(|_| !set.is_empty())?)?;
     let whole = FailureReport::of(error);
     Some(whole.with_message(|message| message.replacen(&refused.to_string(), &moved.to_string(), 1), moved.line()))
-}
-
-impl Diagnostic for CliError {
-    fn diagnosis(&self) -> Diagnosis {
-        match self {
-            Self::Option { option, found, expected, help } => {
-                Kind::Usage.alone().key(*option).found(found).expected(expected).help(help)
-            }
-            Self::ThreadsVariable { found, most } => {
-                let expected = format!("a number from 1 to {most}");
-                Kind::Usage.alone().key("RAYON_NUM_THREADS").found(found).expected(expected)
-            }
-            Self::Output(_) => Kind::Io.of("standard output"),
-            Self::Threads { .. } | Self::Signals(_) | Self::Port { .. } | Self::Folder(_) => Kind::Io.alone(),
-            Self::Json(_) => Kind::Run.alone(),
-        }
-    }
 }

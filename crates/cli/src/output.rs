@@ -11,7 +11,7 @@ use flexframe::run::Estimate;
 use model::CacheNotes;
 use serde::Serialize;
 
-use crate::cli_error::CliError;
+use crate::cli_error::{no_json, option, standard_output};
 
 /// A text as a terminal may have it: names that come from files may hold characters that move its cursor, change its colours or turn
 /// the direction of writing.
@@ -31,7 +31,10 @@ fn for_terminal(text: &str) -> Cow<'_, str> {
 
 /// Prints a summary.
 pub fn print<R: Serialize + Display>(report: &R, json: bool) -> Result<(), Failure> {
-    let report = if json { serde_json::to_string_pretty(report).map_err(CliError::from)? } else { report.to_string() };
+    let report = match json {
+        true => serde_json::to_string_pretty(report).map_err(|error| no_json(&error))?,
+        false => report.to_string(),
+    };
     if json {
         text(&format!("{report}\n"))?
     } else {
@@ -49,20 +52,18 @@ pub fn is_standard(file: &Path) -> bool {
 }
 
 /// Refuses standard output for what is not a text: a folder, or a file of bytes.
-pub fn require_file(option: &'static str, file: Option<&Path>) -> Result<(), CliError> {
+pub fn require_file(name: &str, file: Option<&Path>) -> Result<(), Failure> {
     match file {
-        Some(file) if is_standard(file) => Err(CliError::Option {
-            option,
-            found: "-, which stands for standard output".to_owned(),
-            expected: "the name of a file or folder: only texts can go to standard output".to_owned(),
-            help: "name it (./- is a file of that name)".to_owned(),
-        }),
+        Some(file) if is_standard(file) => {
+            let expected = "the name of a file or folder: only texts can go to standard output";
+            Err(option(name, "-, which stands for standard output", expected, "name it (./- is a file of that name)"))
+        }
         _ => Ok(()),
     }
 }
 
 /// Prints a text as it is.
-pub fn text(text: &str) -> Result<(), CliError> {
+pub fn text(text: &str) -> Result<(), Failure> {
     written(write!(io::stdout(), "{text}"))
 }
 
@@ -104,14 +105,14 @@ pub fn notes(notes: &CacheNotes) {
     }
 }
 
-pub fn line(line: &str) -> Result<(), CliError> {
+pub fn line(line: &str) -> Result<(), Failure> {
     written(writeln!(io::stdout(), "{}", for_terminal(line)))
 }
 
 /// Result of a write to standard output. A reader such as `head` that has had enough is no error.
-pub fn written(result: io::Result<()>) -> Result<(), CliError> {
+pub fn written(result: io::Result<()>) -> Result<(), Failure> {
     match result.and_then(|()| io::stdout().flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(CliError::Output(error)),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(standard_output(&error)),
         _ => Ok(()),
     }
 }

@@ -9,7 +9,7 @@ use flexframe::given_file::GivenFile;
 use scene::{AssignError, Body, Scene, assign, text_from, text_of};
 use toml::Value;
 
-use crate::cli_error::CliError;
+use crate::cli_error::option;
 
 /// Name of standard input.
 const STANDARD_INPUT: &str = "-";
@@ -44,15 +44,13 @@ impl SceneInput {
     }
 
     /// The results file that was given in the place of a scene, if one was. It has a scene of its own, which is not to be changed.
-    pub fn results(&self) -> Result<Option<&Path>, CliError> {
+    pub fn results(&self) -> Result<Option<&Path>, Failure> {
         match (GivenFile::of(&self.scene), &self.set[..]) {
             (Some(GivenFile::Results), []) => Ok(Some(&self.scene)),
-            (Some(GivenFile::Results), _) => Err(CliError::Option {
-                option: "--set",
-                found: "a results file, whose motion has been computed".to_owned(),
-                expected: "a scene".to_owned(),
-                help: "leave --set out, or give the scene file".to_owned(),
-            }),
+            (Some(GivenFile::Results), _) => {
+                let found = "a results file, whose motion has been computed";
+                Err(option("--set", found, "a scene", "leave --set out, or give the scene file"))
+            }
             _ => Ok(None),
         }
     }
@@ -87,12 +85,10 @@ impl SceneInput {
 }
 
 /// The text of a scene with values set.
-fn assigned(text: &str, set: &[(String, Value)]) -> Result<String, CliError> {
-    assign(text, set).map_err(|AssignError { key, found, expected }| CliError::Option {
-        option: "--set",
-        found: format!("`{key}`, {found}"),
-        expected,
-        help: "name the key as messages about the scene do; docs/reference/scene.md lists them".to_owned(),
+fn assigned(text: &str, set: &[(String, Value)]) -> Result<String, Failure> {
+    assign(text, set).map_err(|AssignError { key, found, expected }| {
+        let help = "name the key as messages about the scene do; docs/reference/scene.md lists them";
+        option("--set", format!("`{key}`, {found}"), expected, help)
     })
 }
 

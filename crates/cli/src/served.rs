@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, sleep};
 use std::time::{Duration, Instant};
 
-use crate::cli_error::CliError;
+use diagnostic::{Failure, Kind};
 
 /// How often it looks for a browser, and whether it is to stop.
 const PAUSE: Duration = Duration::from_millis(50);
@@ -36,8 +36,8 @@ pub struct Served {
 
 impl Served {
     /// Takes a port of the loopback interface; 0 is one that is free.
-    pub fn new(port: u16) -> Result<Self, CliError> {
-        let taken = |source| CliError::Port { port, source };
+    pub fn new(port: u16) -> Result<Self, Failure> {
+        let taken = |error| not_taken(port, &error);
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(taken)?;
         listener.set_nonblocking(true).map_err(taken)?;
         let port = listener.local_addr().map_err(taken)?.port();
@@ -52,7 +52,7 @@ impl Served {
     }
 
     /// Gives the page to browsers that ask for it, until it is told to stop.
-    pub fn serve(&self, page: String, stop: &AtomicBool) -> Result<(), CliError> {
+    pub fn serve(&self, page: String, stop: &AtomicBool) -> Result<(), Failure> {
         let door = Arc::new(Door { page, path: format!("/{}/", self.word), port: self.port });
         while !stop.load(Ordering::Relaxed) {
             match self.listener.accept() {
@@ -63,11 +63,17 @@ impl Served {
                 }
                 Ok(_) => {}
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => sleep(PAUSE),
-                Err(source) => return Err(CliError::Port { port: self.port, source }),
+                Err(error) => return Err(not_taken(self.port, &error)),
             }
         }
         Ok(())
     }
+}
+
+/// The error of a port that somebody else has, or may not be had.
+fn not_taken(port: u16, error: &io::Error) -> Failure {
+    let help = "leave --port out, so that one that is free is taken";
+    Kind::Io.alone().help(help).says(format!("port {port} of 127.0.0.1 cannot be taken: {error}"))
 }
 
 /// A page and who may have it.

@@ -18,7 +18,7 @@ use serde_json::Value;
 use slepc::files_of_folder;
 
 use crate::arguments::{FolderArgs, ModeCountArgs, SceneArgs};
-use crate::cli_error::CliError;
+use crate::cli_error::no_json;
 use crate::output;
 use crate::progress::Bar;
 use crate::scene_input::SceneInput;
@@ -104,7 +104,7 @@ impl Session {
         match taken {
             Some(taken) => {
                 // It is set once: each command has one report.
-                let _ = taken.set(serde_json::to_value(report).map_err(CliError::from)?);
+                let _ = taken.set(serde_json::to_value(report).map_err(|error| no_json(&error))?);
                 Ok(())
             }
             None => output::print(report, json),

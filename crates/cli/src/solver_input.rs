@@ -3,11 +3,12 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use diagnostic::Failure;
 use model::Builder;
 use scene::Body;
 use slepc::{Slepc, Stop};
 
-use crate::cli_error::CliError;
+use crate::cli_error::option;
 
 #[derive(Debug, Args)]
 pub struct SolverInput {
@@ -45,20 +46,18 @@ pub struct WriteOnly {
 
 impl SolverInput {
     /// Refuses SLEPc for several bodies at once, whose files would be in each other's way.
-    fn refuse_several(&self, bodies: usize) -> Result<(), CliError> {
+    fn refuse_several(&self, bodies: usize) -> Result<(), Failure> {
         match self.solver {
-            Some(Solver::Slepc) => Err(CliError::Option {
-                option: "--solver",
-                found: format!("slepc for {bodies} bodies"),
-                expected: "a scene of one body, or one body of it".to_owned(),
-                help: "name the body: --body NAME".to_owned(),
-            }),
+            Some(Solver::Slepc) => {
+                let found = format!("slepc for {bodies} bodies");
+                Err(option("--solver", found, "a scene of one body, or one body of it", "name the body: --body NAME"))
+            }
             _ => Ok(()),
         }
     }
 
     /// As [`Self::take`]; refuses SLEPc for several bodies.
-    pub fn take_of(&self, scenes: &[Body], builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
+    pub fn take_of(&self, scenes: &[Body], builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, Failure> {
         match scenes.len() {
             1 => self.take(builder, stop),
             count => self.refuse_several(count).map(|()| None),
@@ -66,7 +65,7 @@ impl SolverInput {
     }
 
     /// Gives the builder its solver, or says what is to be written instead; `stop` stops the solver.
-    pub fn take(&self, builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, CliError> {
+    pub fn take(&self, builder: &mut Builder, stop: &Stop) -> Result<Option<WriteOnly>, Failure> {
         let ranks = self.ranks.map(|ranks| ranks as usize);
         if self.solver != Some(Solver::Slepc) {
             let ours = [
@@ -89,12 +88,7 @@ impl SolverInput {
     }
 }
 
-fn refused(option: &'static str, found: &str, expected: &str) -> CliError {
-    CliError::Option {
-        option,
-        found: found.to_owned(),
-        expected: expected.to_owned(),
-        help: "`--solver slepc --ranks N` finds the modes here; docs/reference/cluster.md shows how a cluster does"
-            .to_owned(),
-    }
+fn refused(name: &str, found: &str, expected: &str) -> Failure {
+    let help = "`--solver slepc --ranks N` finds the modes here; docs/reference/cluster.md shows how a cluster does";
+    option(name, found, expected, help)
 }

@@ -80,7 +80,6 @@ mod tests {
     use mesh_import::ImportError;
     use modal::ModalError;
     use model::BuildError;
-    use slepc::SlepcError;
 
     use super::*;
     use crate::commands::run::RunError;
@@ -92,7 +91,7 @@ mod tests {
         let mesh = fem_tet10::parse_msh(b"$MeshFormat\n4.1 x", "a.msh").unwrap_err();
         let known = of(BuildError::from(Box::new(ImportError::from(mesh))).into());
         assert_eq!((known.kind, known.file.as_deref(), known.line), (Kind::Input, Some("a.msh"), Some(2)));
-        let stopped = ModalError::Engine(SlepcError::Stopped { command: "mpirun".to_owned() }.into());
+        let stopped = ModalError::Engine(Kind::Stopped.alone().says("stopped"));
         assert_eq!(of(BuildError::Modal { scene: scene(), source: stopped }.into()), Kind::Stopped.of("a.toml"));
         let source = SetupError::StepBeyondSpin { step: 1.0, limit: 0.1, spin: 2.0 };
         let known = of(RunError::Setup { scene: scene(), source: Box::new(source.into()) });

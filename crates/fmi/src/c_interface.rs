@@ -13,9 +13,10 @@ use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
 
+use diagnostic::Failure;
 use flexframe::forked::in_this_process;
 
-use crate::error::Error;
+use crate::error::{broken, bug, none, null, refused};
 use crate::instance::{Instance, Saved};
 
 /// A status.
@@ -92,7 +93,7 @@ impl Logger {
         unsafe { callback(self.environment, self.name.as_ptr(), status, category.as_ptr(), words.as_ptr()) }
     }
 
-    fn error(&self, error: &Error) {
+    fn error(&self, error: &Failure) {
         self.say(fmi2Error, c"logStatusError", &error.to_string());
     }
 }
@@ -116,9 +117,10 @@ impl<T> Handed<T> {
 }
 
 /// Does work in the pool of this process: it may have been forked from one that has used this library.
-fn in_pool<T>(work: impl FnOnce() -> T) -> Result<T, Error> {
+fn in_pool<T>(work: impl FnOnce() -> T) -> Result<T, Failure> {
     let work = Handed(work);
-    Ok(in_this_process(move || Handed(work.take()()))?.take())
+    let done = in_this_process(move || Handed(work.take()()));
+    Ok(done.map_err(|error| refused(error.to_string()))?.take())
 }
 
 /// Calls `work` for a component; errors and panics go to the logger. A broken instance can be reset and freed, and its
@@ -126,21 +128,21 @@ fn in_pool<T>(work: impl FnOnce() -> T) -> Result<T, Error> {
 fn call(
     component: fmi2Component,
     function: &'static str,
-    work: impl FnOnce(&mut Component) -> Result<fmi2Status, Error>,
+    work: impl FnOnce(&mut Component) -> Result<fmi2Status, Failure>,
 ) -> fmi2Status {
     // SAFETY: null, or a component that only this thread uses now.
     let Some(component) = (unsafe { component.cast::<Component>().as_mut() }) else { return fmi2Error };
     let is_allowed = !component.is_broken || matches!(function, "fmi2Reset" | "fmi2FreeFMUstate");
     let done = match is_allowed {
         true => catch_unwind(AssertUnwindSafe(|| in_pool(|| work(component))?)),
-        false => Ok(Err(Error::Broken)),
+        false => Ok(Err(broken())),
     };
     let error = match done {
         Ok(Ok(status)) => return status,
         Ok(Err(error)) => error,
         Err(panic) => {
             component.is_broken = true;
-            Error::Panic { function, words: words_of(&*panic) }
+            bug(function, words_of(&*panic))
         }
     };
     // Not even a message may panic.
@@ -152,10 +154,10 @@ fn call(
 ///
 /// # Safety
 /// Null, or `count` entries that live and stay as they are while the slice is used.
-unsafe fn entries<'a, T>(from: *const T, count: usize, what: &'static str) -> Result<&'a [T], Error> {
+unsafe fn entries<'a, T>(from: *const T, count: usize, what: &'static str) -> Result<&'a [T], Failure> {
     match (from.is_null(), count) {
         (_, 0) => Ok(&[]),
-        (true, _) => Err(Error::Null { what, count }),
+        (true, _) => Err(null(what, count)),
         // SAFETY: by the contract of this function.
         (false, _) => Ok(unsafe { std::slice::from_raw_parts(from, count) }),
     }
@@ -165,10 +167,10 @@ unsafe fn entries<'a, T>(from: *const T, count: usize, what: &'static str) -> Re
 ///
 /// # Safety
 /// Null, or room for `count` entries that nobody else uses while the slice is used.
-unsafe fn room<'a, T>(to: *mut T, count: usize, what: &'static str) -> Result<&'a mut [T], Error> {
+unsafe fn room<'a, T>(to: *mut T, count: usize, what: &'static str) -> Result<&'a mut [T], Failure> {
     match (to.is_null(), count) {
         (_, 0) => Ok(&mut []),
-        (true, _) => Err(Error::Null { what, count }),
+        (true, _) => Err(null(what, count)),
         // SAFETY: by the contract of this function.
         (false, _) => Ok(unsafe { std::slice::from_raw_parts_mut(to, count) }),
     }
@@ -178,12 +180,12 @@ unsafe fn room<'a, T>(to: *mut T, count: usize, what: &'static str) -> Result<&'
 ///
 /// # Safety
 /// Null, or a text that ends with a zero and lives while it is used.
-unsafe fn text<'a>(from: *const c_char, what: &'static str) -> Result<&'a str, Error> {
+unsafe fn text<'a>(from: *const c_char, what: &'static str) -> Result<&'a str, Failure> {
     if from.is_null() {
-        return Err(Error::Null { what, count: 1 });
+        return Err(null(what, 1));
     }
     // SAFETY: by the contract of this function.
-    unsafe { CStr::from_ptr(from) }.to_str().map_err(|_| Error::Text { what })
+    unsafe { CStr::from_ptr(from) }.to_str().map_err(|_| refused(format!("a text of {what} is not UTF-8")))
 }
 
 /// "default": the types are those of the standard.
@@ -224,7 +226,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     };
     let make = || {
         if fmuType != fmi2CoSimulation {
-            return Err(Error::NotCoSimulation);
+            return Err(refused("FMUs of flexframe are for co-simulation; instantiate with fmi2CoSimulation"));
         }
         // SAFETY: null, or texts.
         let guid = unsafe { text(fmuGUID, "the GUID") }?;
@@ -233,7 +235,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
         Instance::new(guid, location)
     };
     let made = catch_unwind(AssertUnwindSafe(|| in_pool(make)?))
-        .unwrap_or_else(|panic| Err(Error::Panic { function: "fmi2Instantiate", words: words_of(&*panic) }));
+        .unwrap_or_else(|panic| Err(bug("fmi2Instantiate", words_of(&*panic))));
     match made {
         Ok(instance) => Box::into_raw(Box::new(Component { instance, logger, is_broken: false })).cast(),
         Err(error) => {
@@ -360,7 +362,9 @@ fn none_of(c: fmi2Component, function: &'static str, kind: &'static str, vr: *co
     call(c, function, |_| {
         // SAFETY: null, or nvr entries.
         match unsafe { entries(vr, nvr, "the list of value references") }?.first() {
-            Some(reference) => Err(Error::Kind { kind, reference: *reference }),
+            Some(reference) => Err(refused(format!(
+                "there are no {kind} variables in this FMU; all are real (value reference {reference} was asked for)"
+            ))),
             None => Ok(fmi2OK),
         }
     })
@@ -457,7 +461,7 @@ pub unsafe extern "C" fn fmi2GetFMUstate(c: fmi2Component, FMUstate: *mut fmi2FM
 pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
     call(c, "fmi2SetFMUstate", |component| {
         // SAFETY: null, or a state.
-        let saved = unsafe { FMUstate.cast::<Saved>().as_ref() }.ok_or(Error::Null { what: "FMUstate", count: 1 })?;
+        let saved = unsafe { FMUstate.cast::<Saved>().as_ref() }.ok_or_else(|| null("FMUstate", 1))?;
         component.instance.restore(saved).map(|()| fmi2OK)
     })
 }
@@ -493,7 +497,7 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
 ) -> fmi2Status {
     call(c, "fmi2SerializedFMUstateSize", |_| {
         // SAFETY: null, or a state.
-        let saved = unsafe { FMUstate.cast::<Saved>().as_ref() }.ok_or(Error::Null { what: "FMUstate", count: 1 })?;
+        let saved = unsafe { FMUstate.cast::<Saved>().as_ref() }.ok_or_else(|| null("FMUstate", 1))?;
         let bytes = saved.to_bytes()?.len();
         // SAFETY: null, or a place for a number.
         unsafe { room(size, 1, "size") }?.fill(bytes);
@@ -514,12 +518,14 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
 ) -> fmi2Status {
     call(c, "fmi2SerializeFMUstate", |_| {
         // SAFETY: null, or a state.
-        let saved = unsafe { FMUstate.cast::<Saved>().as_ref() }.ok_or(Error::Null { what: "FMUstate", count: 1 })?;
+        let saved = unsafe { FMUstate.cast::<Saved>().as_ref() }.ok_or_else(|| null("FMUstate", 1))?;
         let bytes = saved.to_bytes()?;
         // SAFETY: null, or room for as many bytes.
         let to = unsafe { room(serializedState, size, "serializedState") }?;
         let needed = bytes.len();
-        to.get_mut(..needed).ok_or(Error::Room { bytes: size, needed })?.copy_from_slice(&bytes);
+        let too_few =
+            || refused(format!("{size} bytes are too few for the state; it has {needed} (fmi2SerializedFMUstateSize)"));
+        to.get_mut(..needed).ok_or_else(too_few)?.copy_from_slice(&bytes);
         Ok(fmi2OK)
     })
 }
@@ -559,7 +565,7 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     _dvKnown: *const f64,
     _dvUnknown: *mut f64,
 ) -> fmi2Status {
-    call(c, "fmi2GetDirectionalDerivative", |_| Err(Error::None { what: "directional derivatives" }))
+    call(c, "fmi2GetDirectionalDerivative", |_| Err(none("directional derivatives")))
 }
 
 /// There are none: inputs are held.
@@ -574,7 +580,7 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     _order: *const c_int,
     _value: *const f64,
 ) -> fmi2Status {
-    call(c, "fmi2SetRealInputDerivatives", |_| Err(Error::None { what: "derivatives of inputs, which are held" }))
+    call(c, "fmi2SetRealInputDerivatives", |_| Err(none("derivatives of inputs, which are held")))
 }
 
 /// There are none; velocities and accelerations are outputs of their own.
@@ -589,7 +595,7 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     _order: *const c_int,
     _value: *mut f64,
 ) -> fmi2Status {
-    call(c, "fmi2GetRealOutputDerivatives", |_| Err(Error::None { what: "derivatives of outputs" }))
+    call(c, "fmi2GetRealOutputDerivatives", |_| Err(none("derivatives of outputs")))
 }
 
 /// Goes on by a communication step, seconds. After an error everything is as it was before.
@@ -616,7 +622,7 @@ pub unsafe extern "C" fn fmi2DoStep(
 /// `c` is null or a component.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
-    call(c, "fmi2CancelStep", |_| Err(Error::None { what: "steps that go on by themselves" }))
+    call(c, "fmi2CancelStep", |_| Err(none("steps that go on by themselves")))
 }
 
 /// Nothing is pending.

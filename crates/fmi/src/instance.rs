@@ -1,10 +1,11 @@
 //! An instance of an FMU, and what may be called in each phase of its life.
 
+use diagnostic::Failure;
 use flexframe::dynamics::{decode, encode};
 use flexframe::fmu::{FmuModel, Manifest, Source, Variable};
 use serde::{Deserialize, Serialize};
 
-use crate::error::Error;
+use crate::error::{broken, lost, no_bytes, no_state, refused};
 use crate::location::folder_of;
 use crate::motion::{self, Motion};
 use crate::phase::Phase;
@@ -27,7 +28,7 @@ pub struct Instance {
 enum Body {
     Still(Box<FmuModel>),
     Moving(Box<Motion>),
-    /// Lost by a panic; [`Error::Lost`] is what callers get.
+    /// Lost by a panic; callers get [`lost`].
     Lost,
 }
 
@@ -42,11 +43,14 @@ pub struct Saved {
 
 impl Instance {
     /// Opens the FMU that was unpacked to where `location` says.
-    pub fn new(guid: &str, location: &str) -> Result<Self, Error> {
+    pub fn new(guid: &str, location: &str) -> Result<Self, Failure> {
         let resources = folder_of(location)?;
         let manifest = Manifest::checked(&resources)?;
         if manifest.guid != guid {
-            return Err(Error::Guid { found: guid.to_owned(), expected: manifest.guid });
+            return Err(refused(format!(
+                "the GUID {guid} is not that of this FMU, {}: modelDescription.xml and the resources are of different FMUs; unpack the FMU again",
+                manifest.guid
+            )));
         }
         let fmu = FmuModel::open(&resources, &manifest)?;
         Ok(Self {
@@ -61,35 +65,35 @@ impl Instance {
     }
 
     /// Refuses a call in a phase that it is not for.
-    fn allow(&self, function: &'static str, phases: &[Phase], allowed: &'static str) -> Result<(), Error> {
+    fn allow(&self, function: &'static str, phases: &[Phase], allowed: &'static str) -> Result<(), Failure> {
         match phases.contains(&self.phase) {
             true => Ok(()),
-            false => Err(Error::Phase { function, phase: self.phase, allowed }),
+            false => Err(refused(format!("{function} cannot be called {}; call it {allowed}", self.phase))),
         }
     }
 
-    fn motion(&mut self) -> Result<&mut Motion, Error> {
+    fn motion(&mut self) -> Result<&mut Motion, Failure> {
         match &mut self.body {
             Body::Moving(motion) => Ok(motion),
-            Body::Still(_) => Err(Error::Broken),
-            Body::Lost => Err(Error::Lost),
+            Body::Still(_) => Err(broken()),
+            Body::Lost => Err(lost()),
         }
     }
 
     /// Times in seconds.
-    pub fn set_up(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
+    pub fn set_up(&mut self, start: f64, stop: Option<f64>) -> Result<(), Failure> {
         self.allow("fmi2SetupExperiment", &[Phase::Instantiated], "right after fmi2Instantiate or fmi2Reset")?;
         if start != 0.0 {
-            return Err(Error::StartTime { found: start });
+            return Err(refused(format!("the start time is {start}; the scene begins at time 0: start there")));
         }
         if let Some(found) = stop.filter(|stop| !(*stop > 0.0 && stop.is_finite())) {
-            return Err(Error::StopTime { found });
+            return Err(refused(format!("the stop time is {found}; give a positive number, or none")));
         }
         self.stop = stop;
         Ok(())
     }
 
-    pub fn enter_initialization(&mut self) -> Result<(), Error> {
+    pub fn enter_initialization(&mut self) -> Result<(), Failure> {
         self.allow("fmi2EnterInitializationMode", &[Phase::Instantiated], "once, after fmi2SetupExperiment")?;
         self.begin()?;
         self.phase = Phase::Initialization;
@@ -97,7 +101,7 @@ impl Instance {
     }
 
     /// Makes the motion.
-    fn begin(&mut self) -> Result<(), Error> {
+    fn begin(&mut self) -> Result<(), Failure> {
         let fmu = match std::mem::replace(&mut self.body, Body::Lost) {
             Body::Still(fmu) => fmu,
             other => {
@@ -122,44 +126,45 @@ impl Instance {
         }
     }
 
-    pub fn exit_initialization(&mut self) -> Result<(), Error> {
+    pub fn exit_initialization(&mut self) -> Result<(), Failure> {
         self.allow("fmi2ExitInitializationMode", &[Phase::Initialization], "after fmi2EnterInitializationMode")?;
         self.phase = Phase::Stepping;
         Ok(())
     }
 
-    pub fn terminate(&mut self) -> Result<(), Error> {
+    pub fn terminate(&mut self) -> Result<(), Failure> {
         self.allow("fmi2Terminate", &[Phase::Stepping], "after fmi2ExitInitializationMode")?;
         self.phase = Phase::Terminated;
         Ok(())
     }
 
     /// Back to what it was after it was made.
-    pub fn reset(&mut self) -> Result<(), Error> {
+    pub fn reset(&mut self) -> Result<(), Failure> {
         self.body = match std::mem::replace(&mut self.body, Body::Lost) {
             Body::Moving(motion) => motion.into_model().map_or(Body::Lost, |fmu| Body::Still(Box::new(fmu))),
             other => other,
         };
         if matches!(self.body, Body::Lost) {
-            return Err(Error::Lost);
+            return Err(lost());
         }
         self.starts.clear();
         (self.phase, self.stop) = (Phase::Instantiated, None);
         Ok(())
     }
 
-    fn variable(&self, reference: u32) -> Result<&Variable, Error> {
+    fn variable(&self, reference: u32) -> Result<&Variable, Failure> {
         let last = self.variables.len().saturating_sub(1);
-        self.variables.get(reference as usize).ok_or(Error::Reference { reference, last })
+        let words = || format!("the value reference {reference} is none of this FMU, which has 0 to {last}");
+        self.variables.get(reference as usize).ok_or_else(|| refused(words()))
     }
 
-    pub fn get_real(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Error> {
+    pub fn get_real(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
         let phases = [Phase::Initialization, Phase::Stepping, Phase::Terminated];
         self.allow("fmi2GetReal", &phases, "from fmi2EnterInitializationMode on")?;
         for reference in references {
             self.variable(*reference)?;
         }
-        let Self { variables, body: Body::Moving(motion), seconds, .. } = self else { return Err(Error::Broken) };
+        let Self { variables, body: Body::Moving(motion), seconds, .. } = self else { return Err(broken()) };
         for (reference, value) in references.iter().zip(values) {
             *value = match variables[*reference as usize].source {
                 Source::Time => motion.time() * *seconds,
@@ -171,19 +176,24 @@ impl Instance {
     }
 
     /// Sets inputs: all of them or none.
-    pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Error> {
+    pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         let phases = [Phase::Instantiated, Phase::Initialization, Phase::Stepping];
         self.allow("fmi2SetReal", &phases, "before fmi2Terminate")?;
         for (reference, value) in references.iter().zip(values) {
             let Variable { name, source, .. } = self.variable(*reference)?;
             let what = match source {
                 Source::Input(_) if value.is_finite() => continue,
-                Source::Input(_) => return Err(Error::NotFinite { name: name.clone(), found: *value }),
+                Source::Input(_) => {
+                    let words = format!("{name} cannot be {value}: give a finite number; nothing has been set");
+                    return Err(refused(words));
+                }
                 Source::Time => "the time, which fmi2DoStep sets",
                 Source::Row { is_output: true, .. } => "an output",
                 Source::Row { is_output: false, .. } => "a variable to look at",
             };
-            return Err(Error::NotInput { name: name.clone(), what });
+            return Err(refused(format!(
+                "{name} cannot be set: it is {what}; inputs are the variables with causality=\"input\""
+            )));
         }
         for (reference, value) in references.iter().zip(values) {
             match &mut self.body {
@@ -199,7 +209,7 @@ impl Instance {
     }
 
     /// Goes on from `point` by `step`, seconds. Returns what the user has to be warned of.
-    pub fn step(&mut self, point: f64, step: f64) -> Result<Vec<String>, Error> {
+    pub fn step(&mut self, point: f64, step: f64) -> Result<Vec<String>, Failure> {
         self.allow("fmi2DoStep", &[Phase::Stepping], "between fmi2ExitInitializationMode and fmi2Terminate")?;
         let seconds = self.seconds;
         let motion = self.motion()?;
@@ -208,12 +218,12 @@ impl Instance {
     }
 
     /// Seconds.
-    pub fn time(&mut self) -> Result<f64, Error> {
+    pub fn time(&mut self) -> Result<f64, Failure> {
         let seconds = self.seconds;
         Ok(self.motion()?.time() * seconds)
     }
 
-    pub fn save(&mut self) -> Result<Saved, Error> {
+    pub fn save(&mut self) -> Result<Saved, Failure> {
         let phases = [Phase::Initialization, Phase::Stepping, Phase::Terminated];
         self.allow("fmi2GetFMUstate", &phases, "from fmi2EnterInitializationMode on, when there is a state")?;
         let (guid, phase, stop) = (self.guid.clone(), self.phase, self.stop);
@@ -222,9 +232,9 @@ impl Instance {
 
     /// Goes back, or on, to a state that was saved; of an instance that has not begun, too. After an error everything is
     /// as it was.
-    pub fn restore(&mut self, saved: &Saved) -> Result<(), Error> {
+    pub fn restore(&mut self, saved: &Saved) -> Result<(), Failure> {
         if saved.guid != self.guid {
-            return Err(Error::Bytes);
+            return Err(no_bytes());
         }
         if self.phase == Phase::Instantiated {
             let before = (self.stop, self.starts.clone());
@@ -238,7 +248,7 @@ impl Instance {
         } else if saved.stop == self.stop {
             self.motion()?.set_state(&saved.motion)?;
         } else {
-            return Err(Error::Bytes);
+            return Err(no_bytes());
         }
         self.phase = saved.phase;
         Ok(())
@@ -261,18 +271,16 @@ fn input_number(variables: &[Variable], reference: u32) -> Option<usize> {
 
 impl Saved {
     /// As bytes, with a check sum.
-    pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
-        let bytes = encode(self)?;
+    pub fn to_bytes(&self) -> Result<Vec<u8>, Failure> {
+        let bytes = encode(self).map_err(no_state)?;
         Ok([&crc32fast::hash(&bytes).to_le_bytes(), bytes.as_slice()].concat())
     }
 
     /// From these bytes.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Failure> {
         match bytes.split_first_chunk::<4>() {
-            Some((sum, bytes)) if *sum == crc32fast::hash(bytes).to_le_bytes() => {
-                decode(bytes).map_err(|_| Error::Bytes)
-            }
-            _ => Err(Error::Bytes),
+            Some((sum, bytes)) if *sum == crc32fast::hash(bytes).to_le_bytes() => decode(bytes).map_err(|_| no_bytes()),
+            _ => Err(no_bytes()),
         }
     }
 }

@@ -2,13 +2,18 @@
 
 use std::path::PathBuf;
 
+use diagnostic::Failure;
 use percent_encoding::percent_decode_str;
 
-use crate::error::Error;
+use crate::error::refused;
 
 /// The folder that a URI of the scheme "file", or a plain path, stands for.
-pub fn folder_of(location: &str) -> Result<PathBuf, Error> {
-    let refuse = || Error::Location { found: location.to_owned() };
+pub fn folder_of(location: &str) -> Result<PathBuf, Failure> {
+    let refuse = || {
+        refused(format!(
+            "the resource location {location:?} is no folder of this machine; give the URI of the unpacked folder resources, such as file:///tmp/blade/resources"
+        ))
+    };
     let Some(rest) = location.strip_prefix("file:") else {
         return if location.is_empty() || location.contains("://") { Err(refuse()) } else { Ok(location.into()) };
     };

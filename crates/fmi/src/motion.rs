@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use diagnostic::Failure;
 use flexframe::advice::Review;
 use flexframe::dynamics::{
     History, Initial, JointLaw, LoadFrame, PointForce, PointMoment, Reached, Rows, Run, ScaledLoad, SharedLoad, Signal,
@@ -15,7 +16,7 @@ use flexframe::row::{BodyRow, Row};
 use self_cell::self_cell;
 use serde::{Deserialize, Serialize};
 
-use crate::error::{Error, Failure};
+use crate::error::{no_bytes, no_state, refused};
 
 /// Part of the end that a communication step has to have: the least step of a scene.
 const SHORTEST: f64 = 1e-12;
@@ -84,7 +85,7 @@ pub struct State {
 
 impl Motion {
     /// From the beginning of the scene to its end or the `stop` time, if that is later; times in the scene's unit.
-    pub fn new(fmu: FmuModel, stop: Option<f64>) -> Result<Self, (Box<FmuModel>, Error)> {
+    pub fn new(fmu: FmuModel, stop: Option<f64>) -> Result<Self, (Box<FmuModel>, Failure)> {
         let initial: Vec<Initial> = fmu.bodies.iter().map(|body| body.model.initial(&body.body)).collect();
         let inputs: Vec<Channel> = fmu.variables.iter().filter_map(|variable| channel(variable.source)).collect();
         let run = match run(&fmu, &inputs, stop) {
@@ -140,9 +141,12 @@ impl Motion {
     }
 
     /// The numbers of a row of a results file, now.
-    pub fn numbers(&mut self) -> Result<&[f64], Error> {
+    pub fn numbers(&mut self) -> Result<&[f64], Failure> {
         if !self.known {
-            self.observe().map_err(Error::Outputs)?;
+            let words = |error| {
+                format!("the outputs cannot be found: {error}; set other inputs, or a state that was saved before")
+            };
+            self.observe().map_err(|error| refused(words(error)))?;
         }
         Ok(&self.numbers)
     }
@@ -168,20 +172,26 @@ impl Motion {
     }
 
     /// Goes on from `point` by `step`, in the scene's unit of time. After an error everything is as it was.
-    pub fn go(&mut self, point: f64, step: f64) -> Result<(), Error> {
+    pub fn go(&mut self, point: f64, step: f64) -> Result<(), Failure> {
         let (time, end) = (self.time(), self.run.end());
         let least = SHORTEST * end;
         if !(step >= least && step.is_finite()) {
-            return Err(Error::Step { found: step, least, time });
+            return Err(refused(format!(
+                "the communication step is {step}; give a step of at least {least:e}, forward in time; the FMU stays at time {time}"
+            )));
         }
         let slack = ROUNDING * step;
         let is_here = (point - time).abs() <= slack;
         if !is_here {
-            return Err(Error::Point { found: point, time });
+            return Err(refused(format!(
+                "the communication point is {point}, but the FMU is at time {time}; go on from there, or set a state that was saved at {point}"
+            )));
         }
         let mut target = point + step;
         if target > end + slack {
-            return Err(Error::End { found: target, end, time });
+            return Err(refused(format!(
+                "a step to time {target} is beyond the end at {end}; set a longer stop time in fmi2SetupExperiment, or pack the scene with a later time.end; the FMU stays at time {time}"
+            )));
         }
         if (target - end).abs() <= slack {
             target = end;
@@ -197,7 +207,9 @@ impl Motion {
             self.known = false;
             // What the failed step has shown is not to be held against what comes.
             self.reviewed = self.reviewed.take().map(|reviewed| Reviewed::of(reviewed.into_owner()));
-            Error::Failed { source, time }
+            refused(format!(
+                "the step failed: {source}. The FMU stays at time {time}, before the step: other inputs may be set and the step be tried again, or an earlier state be set"
+            ))
         })
     }
 
@@ -235,19 +247,19 @@ impl Motion {
     }
 
     /// The state with the inputs.
-    pub fn state(&self) -> Result<State, Error> {
+    pub fn state(&self) -> Result<State, Failure> {
         let inputs = self.inputs.iter().map(|channel| (channel.value, channel.signal.numbers())).collect();
-        Ok(State { checkpoint: self.run.checkpoint()?, inputs, changed: self.changed.clone() })
+        Ok(State { checkpoint: self.run.checkpoint().map_err(no_state)?, inputs, changed: self.changed.clone() })
     }
 
     /// Goes on from a state of this FMU. After an error everything is as it was.
-    pub fn set_state(&mut self, state: &State) -> Result<(), Error> {
+    pub fn set_state(&mut self, state: &State) -> Result<(), Failure> {
         let finite = |(value, numbers): &(f64, [f64; 3])| value.is_finite() && numbers.iter().all(|n| n.is_finite());
         let fits = state.inputs.len() == self.inputs.len() && state.changed.len() == self.changed.len();
         if !(fits && state.inputs.iter().all(finite)) {
-            return Err(Error::Bytes);
+            return Err(no_bytes());
         }
-        self.run = self.run.clone().restored(&state.checkpoint)?;
+        self.run = self.run.clone().restored(&state.checkpoint).map_err(no_state)?;
         for (channel, (value, numbers)) in self.inputs.iter_mut().zip(&state.inputs) {
             channel.value = *value;
             channel.signal.set(*numbers);
@@ -271,7 +283,7 @@ fn advance(run: &mut Run, reviews: &mut [Review<'_>], bodies: &[FmuBody], target
         // A step that fails after the model has come to mean nothing fails for that.
         let refusing = bodies.iter().zip(&*reviews).filter(|(body, _)| body.body.effects.refuse);
         if let Some((time, refusal)) = refusing.filter_map(|(_, review)| review.stop()).next() {
-            return Err(Failure::Refused { time, words: refusal.to_string() });
+            return Err(refused(format!("at time {time:.6}: {refusal}")));
         }
         match reached.map_err(StepError::from)? {
             Reached::Stop | Reached::End => return Ok(()),
@@ -296,7 +308,7 @@ impl JointLaw for Motor {
 }
 
 /// The run of the bodies, with the inputs.
-fn run(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Run, Error> {
+fn run(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Run, Failure> {
     let models: Vec<&Model> = fmu.bodies.iter().map(|body| &body.model).collect();
     let rows = Rows::EverySteps(u64::MAX);
     let mut beginning = StartSettings { rows, ..StartSettings::of(&fmu.system, &models) };
@@ -309,7 +321,7 @@ fn run(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Run, Err
             beginning.laws.push(JointForces { joint, along, law: Arc::new(Motor(signal.clone())) });
         }
     }
-    begin(&fmu.system, &models, &beginning).map_err(|error| Error::Start(Box::new(error)))
+    begin(&fmu.system, &models, &beginning).map_err(|error| refused(format!("the motion cannot start: {error}")))
 }
 
 /// Lets inputs act on a body.

@@ -5,13 +5,14 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::time::Duration;
 
+use diagnostic::{Failure, Kind};
 use foreign_program::open_ordinary;
 use modal::{Eigenpairs, EngineStats, StaticAnswers};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use crate::binary::read_vectors;
-use crate::error::SlepcError;
+use crate::error::other_matrices;
 use crate::folder::LOG;
 use crate::json::json;
 
@@ -50,14 +51,15 @@ pub(crate) fn eigenpairs(
     digest: &str,
     unknowns: usize,
     requested: usize,
-) -> Result<Eigenpairs, SlepcError> {
+) -> Result<Eigenpairs, Failure> {
     let found: Modes = finished(folder, "modes.json", "")?;
     if found.digest != digest || found.unknowns != unknowns {
-        return Err(SlepcError::OtherMatrices { folder: folder.to_owned() });
+        return Err(other_matrices(folder));
     }
     let count = found.eigenvalues.len();
     if count < requested {
-        return Err(SlepcError::FewModes { folder: folder.to_owned(), found: count, requested });
+        let wrong = Kind::Input.of(folder).help("ask for fewer, or write the folder again: --write-only");
+        return Err(wrong.says(format!("{count} modes, where {requested} are asked for")));
     }
     let time = |phase: &str| {
         let seconds = found.times.get(phase).copied().unwrap_or_default();
@@ -85,11 +87,11 @@ pub(crate) fn static_answers(
     name: &str,
     digest: &str,
     unknowns: usize,
-) -> Result<StaticAnswers, SlepcError> {
+) -> Result<StaticAnswers, Failure> {
     let asked = " (static responses: the scene asks for these, too, and their forces are written there now)";
     let found: Statics = finished(folder, &format!("statics-{name}.json"), asked)?;
     if found.digest != digest || found.unknowns != unknowns {
-        return Err(SlepcError::OtherMatrices { folder: folder.to_owned() });
+        return Err(other_matrices(folder));
     }
     let path = folder.join(format!("statics-{name}.petsc"));
     let displacements = read_vectors(&path, unknowns, found.residuals.len())?;
@@ -97,11 +99,14 @@ pub(crate) fn static_answers(
 }
 
 /// The file that the driver leaves last; `what` says what it is.
-fn finished<T: DeserializeOwned>(folder: &Path, name: &str, what: &'static str) -> Result<T, SlepcError> {
+fn finished<T: DeserializeOwned>(folder: &Path, name: &str, what: &str) -> Result<T, Failure> {
     let path = folder.join(name);
     if folder.is_dir() && !path.exists() {
-        let said = last_line(&folder.join(LOG));
-        return Err(SlepcError::NotFinished { folder: folder.to_owned(), name: name.to_owned(), what, said });
+        let said = last_line(&folder.join(LOG)).map(|said| format!("; driver.log ends with: {said}"));
+        let words =
+            format!("{name} is not there{what}: the driver has not come to its end{}", said.unwrap_or_default());
+        let help = "`sbatch job.sh` in that folder, or `bash job.sh`, and then this command again; what the driver says is in driver.log";
+        return Err(Kind::Io.of(folder).help(help).says(words));
     }
     json(&path)
 }

@@ -6,11 +6,12 @@
 use std::io::{self, BufReader, Read, Write};
 use std::path::Path;
 
+use diagnostic::Failure;
 use faer::{Mat, MatRef};
 use foreign_program::open_ordinary;
 use modal::HeldMatrix;
 
-use crate::error::SlepcError;
+use crate::error::{self, failed};
 
 /// The kind of a sparse matrix (`MAT_FILE_CLASSID`).
 const MATRIX: i32 = 1_211_216;
@@ -62,11 +63,11 @@ pub(crate) fn write_vectors(vectors: MatRef<'_, f64>, file: &mut impl Write) -> 
 }
 
 /// Reads a number of vectors with a number of rows each.
-pub(crate) fn read_vectors(path: &Path, rows: usize, count: usize) -> Result<Mat<f64>, SlepcError> {
-    let file = open_ordinary(path).map_err(SlepcError::io(path, "open it"))?;
-    let damaged = |what: String| SlepcError::Damaged { path: path.to_owned(), what };
+pub(crate) fn read_vectors(path: &Path, rows: usize, count: usize) -> Result<Mat<f64>, Failure> {
+    let file = open_ordinary(path).map_err(failed(path, "open it"))?;
+    let damaged = |words: String| error::damaged(path, words);
     // Before any memory is taken for what a file merely claims.
-    let found = file.metadata().map_err(SlepcError::io(path, "open it"))?.len();
+    let found = file.metadata().map_err(failed(path, "open it"))?.len();
     let whole = (rows as u64).saturating_mul(8).saturating_add(8);
     if found < whole.saturating_mul(count as u64) {
         return Err(damaged(format!("it ends in vector {} of {count}", found / whole + 1)));

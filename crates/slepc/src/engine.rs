@@ -3,12 +3,13 @@
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
+use diagnostic::Failure;
 use faer::MatRef;
 use modal::{Eigenpairs, Engine, EngineError, EnginePhase, HeldProblem, Progress, StaticAnswers};
 use whole_file::TemporaryFolder;
 
 use crate::answers;
-use crate::error::SlepcError;
+use crate::error::failed;
 use crate::folder::{check_digest, digest, files_of_folder, write_forces, write_matrices, write_problem};
 use crate::run::drive;
 use crate::stop::Stop;
@@ -78,9 +79,9 @@ struct Work {
 }
 
 impl Work {
-    fn new(problem: &HeldProblem<'_>) -> Result<Self, SlepcError> {
+    fn new(problem: &HeldProblem<'_>) -> Result<Self, Failure> {
         let folder = TemporaryFolder::new();
-        let folder = folder.map_err(SlepcError::io(std::env::temp_dir(), "make a folder in it"))?;
+        let folder = folder.map_err(failed(std::env::temp_dir(), "make a folder in it"))?;
         let digest = write_matrices(problem, folder.path())?;
         Ok(Self { folder, digest })
     }
@@ -93,7 +94,7 @@ impl Runner {
         problem: &HeldProblem<'_>,
         modes: usize,
         progress: &mut dyn FnMut(Progress),
-        answer: impl FnOnce(&Work, &mut dyn FnMut(Progress)) -> Result<T, SlepcError>,
+        answer: impl FnOnce(&Work, &mut dyn FnMut(Progress)) -> Result<T, Failure>,
     ) -> Result<T, EngineError> {
         let _at_work = self.stop.work();
         let mut work = self.work.lock().unwrap_or_else(PoisonError::into_inner);

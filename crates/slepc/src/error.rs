@@ -1,72 +1,42 @@
 //! Errors of SLEPc.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use diagnostic::{Diagnosis, Diagnostic, Kind};
+use diagnostic::{Failure, Kind};
 
-/// Errors of SLEPc.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-#[allow(missing_docs)] // the message of a variant says what its fields are
-pub enum SlepcError {
-    /// A program that is needed is not there, or cannot be used.
-    #[error("--solver slepc: {found}\n = {help}")]
-    NotInstalled { found: String, help: String },
-    /// The driver refuses, in words.
-    #[error("--solver slepc: {found}\n = {help}")]
-    Refused { found: String, help: String },
-    /// The driver did not come to its end. `said`: the last lines.
-    #[error("--solver slepc: `{command}` failed ({status}); it said last:\n{said}\n = {help}")]
-    Failed { command: String, status: String, said: String, help: String },
-    /// A signal has stopped it.
-    #[error("stopped; the processes of `{command}` are ended, and their files removed")]
-    Stopped { command: String },
-    /// A file cannot be read or written.
-    #[error("{}: cannot {action}: {source}\n = check its name, its folder and the room on its disk", path.display())]
-    Io { path: PathBuf, action: &'static str, source: io::Error },
-    /// The driver has not left its answers yet. `name`: the file that the driver leaves last; `what`: its content, if
-    /// that is not plain; `said`: the last line that it said.
-    #[error(
-        "{}: {name} is not there{what}: the driver has not come to its end{}\n = `sbatch job.sh` in that folder, or `bash job.sh`, and then \
-         this command again; what the driver says is in driver.log",
-        folder.display(),
-        said.as_ref().map_or_else(String::new, |said| format!("; driver.log ends with: {said}"))
-    )]
-    NotFinished { folder: PathBuf, name: String, what: &'static str, said: Option<String> },
-    /// The folder is that of another problem.
-    #[error(
-        "{}: the answers are those of other matrices than the scene's now\n = name the folder that was written for this scene by this \
-         version of flexframe, or write it again: --write-only",
-        folder.display()
-    )]
-    OtherMatrices { folder: PathBuf },
-    /// Fewer modes than are asked for.
-    #[error("{}: {found} modes, where {requested} are asked for\n = ask for fewer, or write the folder again: --write-only", folder.display())]
-    FewModes { folder: PathBuf, found: usize, requested: usize },
-    /// A file is not what the driver writes.
-    #[error("{}: {what}\n = let the driver write it again", path.display())]
-    Damaged { path: PathBuf, what: String },
+/// The error of a program that is needed and not there, or cannot be used.
+pub(crate) fn not_installed(found: &str, help: impl Into<String>) -> Failure {
+    Kind::Io.alone().found(found).help(help).says(format!("--solver slepc: {found}"))
 }
 
-impl SlepcError {
-    pub(crate) fn io(path: impl Into<PathBuf>, action: &'static str) -> impl FnOnce(io::Error) -> Self {
-        let path = path.into();
-        move |source| Self::Io { path, action, source }
+/// The refusal of the driver, in words.
+pub(crate) fn refused(found: &str, help: impl Into<String>) -> Failure {
+    Kind::Run.alone().found(found).help(help).says(format!("--solver slepc: {found}"))
+}
+
+/// The end of processes that a signal has stopped.
+pub(crate) fn stopped(command: &str) -> Failure {
+    Kind::Stopped.alone().says(format!("stopped; the processes of `{command}` are ended, and their files removed"))
+}
+
+/// The error of a file that cannot be read or written.
+pub(crate) fn failed(path: impl Into<PathBuf>, action: &'static str) -> impl FnOnce(io::Error) -> Failure {
+    let path = path.into();
+    move |error| {
+        let help = "check its name, its folder and the room on its disk";
+        Kind::Io.of(path).help(help).says(format!("cannot {action}: {error}"))
     }
 }
 
-impl Diagnostic for SlepcError {
-    fn diagnosis(&self) -> Diagnosis {
-        match self {
-            Self::NotInstalled { found, help } => Kind::Io.alone().found(found).help(help),
-            Self::Refused { found, help } => Kind::Run.alone().found(found).help(help),
-            Self::Failed { status, help, .. } => Kind::Run.alone().found(status).help(help),
-            Self::Stopped { .. } => Kind::Stopped.alone(),
-            Self::Io { path, .. } | Self::NotFinished { folder: path, .. } => Kind::Io.of(path),
-            Self::Damaged { path, .. } | Self::OtherMatrices { folder: path } | Self::FewModes { folder: path, .. } => {
-                Kind::Input.of(path)
-            }
-        }
-    }
+/// The refusal of answers to another problem.
+pub(crate) fn other_matrices(folder: &Path) -> Failure {
+    let help =
+        "name the folder that was written for this scene by this version of flexframe, or write it again: --write-only";
+    Kind::Input.of(folder).help(help).says("the answers are those of other matrices than the scene's now")
+}
+
+/// The error of a file that is not what the driver writes.
+pub(crate) fn damaged(path: &Path, words: impl Into<String>) -> Failure {
+    Kind::Input.of(path).help("let the driver write it again").says(words)
 }

@@ -4,6 +4,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use faer::MatRef;
 use foreign_program::shell_word;
 use modal::{HeldMatrix, HeldProblem};
@@ -11,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use whole_file::WholeFile;
 
 use crate::binary::{write_matrix, write_vectors};
-use crate::error::SlepcError;
+use crate::error::{failed, other_matrices};
 use crate::json::json;
 
 /// The program that every rank runs.
@@ -62,20 +63,20 @@ impl<'a> Files<'a> {
     }
 
     /// Writes one, which is not in its place yet.
-    fn add<T>(&mut self, name: &str, contents: impl FnOnce(&mut WholeFile) -> io::Result<T>) -> Result<T, SlepcError> {
+    fn add<T>(&mut self, name: &str, contents: impl FnOnce(&mut WholeFile) -> io::Result<T>) -> Result<T, Failure> {
         let path = self.folder.join(name);
         let written = WholeFile::create(&path).and_then(|mut file| {
             let done = contents(&mut file)?;
             file.make_safe()?;
             Ok((done, file))
         });
-        let (done, file) = written.map_err(SlepcError::io(path.clone(), "write it"))?;
+        let (done, file) = written.map_err(failed(path.clone(), "write it"))?;
         self.written.push((path, file));
         Ok(done)
     }
 
     /// Writes K and M, the rigid motions, and the driver. Returns the digest of K and M.
-    fn add_matrices(&mut self, problem: &HeldProblem<'_>) -> Result<String, SlepcError> {
+    fn add_matrices(&mut self, problem: &HeldProblem<'_>) -> Result<String, Failure> {
         let mut written = |name: &str, matrix: &HeldMatrix<'_>| {
             self.add(name, |file| hashed(file, |file| write_matrix(matrix, file)))
         };
@@ -86,7 +87,7 @@ impl<'a> Files<'a> {
     }
 
     /// Writes the question for the driver: a number of modes, of the matrices with this digest.
-    fn add_problem(&mut self, problem: &HeldProblem<'_>, digest: &str, modes: usize) -> Result<(), SlepcError> {
+    fn add_problem(&mut self, problem: &HeldProblem<'_>, digest: &str, modes: usize) -> Result<(), Failure> {
         let problem = Problem {
             digest,
             unknowns: problem.stiffness.size(),
@@ -100,14 +101,14 @@ impl<'a> Files<'a> {
     }
 
     /// Puts them into their places.
-    fn finish(self) -> Result<(), SlepcError> {
-        let finish = |(path, file): (PathBuf, WholeFile)| file.finish().map_err(SlepcError::io(path, "write it"));
+    fn finish(self) -> Result<(), Failure> {
+        let finish = |(path, file): (PathBuf, WholeFile)| file.finish().map_err(failed(path, "write it"));
         self.written.into_iter().try_for_each(finish)
     }
 }
 
 /// Writes K and M, the rigid motions, and the driver. Returns the digest of K and M.
-pub(crate) fn write_matrices(problem: &HeldProblem<'_>, folder: &Path) -> Result<String, SlepcError> {
+pub(crate) fn write_matrices(problem: &HeldProblem<'_>, folder: &Path) -> Result<String, Failure> {
     let mut files = Files::of(folder);
     let digest = files.add_matrices(problem)?;
     files.finish()?;
@@ -121,10 +122,10 @@ pub(crate) fn write_problem(
     digest: &str,
     modes: usize,
     folder: &Path,
-) -> Result<(), SlepcError> {
+) -> Result<(), Failure> {
     let before = folder.join("modes.json");
     if before.exists() {
-        fs::remove_file(&before).map_err(SlepcError::io(before, "remove what was there"))?;
+        fs::remove_file(&before).map_err(failed(before, "remove what was there"))?;
     }
     let mut files = Files::of(folder);
     files.add_problem(problem, digest, modes)?;
@@ -132,9 +133,9 @@ pub(crate) fn write_problem(
 }
 
 /// Writes forces to which static responses are asked for. Returns their name, which follows from them.
-pub(crate) fn write_forces(forces: MatRef<'_, f64>, folder: &Path) -> Result<String, SlepcError> {
+pub(crate) fn write_forces(forces: MatRef<'_, f64>, folder: &Path) -> Result<String, Failure> {
     let hash = hashed(io::sink(), |file| write_vectors(forces, file));
-    let name = hash.map_err(SlepcError::io(folder, "write forces into it"))?.to_hex()[..NAME].to_owned();
+    let name = hash.map_err(failed(folder, "write forces into it"))?.to_hex()[..NAME].to_owned();
     if !folder.join(format!("forces-{name}.json")).exists() {
         let mut files = Files::of(folder);
         files.add(&format!("forces-{name}.petsc"), |file| write_vectors(forces, file))?;
@@ -145,9 +146,9 @@ pub(crate) fn write_forces(forces: MatRef<'_, f64>, folder: &Path) -> Result<Str
 }
 
 /// Refuses a folder that was written for other matrices than those with this digest.
-pub(crate) fn check_digest(folder: &Path, digest: &str) -> Result<(), SlepcError> {
+pub(crate) fn check_digest(folder: &Path, digest: &str) -> Result<(), Failure> {
     let written: Digest = json(&folder.join("problem.json"))?;
-    if written.digest == digest { Ok(()) } else { Err(SlepcError::OtherMatrices { folder: folder.to_owned() }) }
+    if written.digest == digest { Ok(()) } else { Err(other_matrices(folder)) }
 }
 
 /// The answers to questions that were asked before, by the names that this program and the driver give them.
@@ -173,15 +174,15 @@ pub fn files_of_folder(folder: &Path) -> Vec<PathBuf> {
 /// to do. `scene` is the scene file. Returns the files.
 ///
 /// # Errors
-/// [`SlepcError::Io`].
+/// [`Failure`] of a file.
 pub fn write_folder(
     problem: &HeldProblem<'_>,
     modes: usize,
     folder: &Path,
     ranks: usize,
     scene: &Path,
-) -> Result<Vec<PathBuf>, SlepcError> {
-    fs::create_dir_all(folder).map_err(SlepcError::io(folder, "make the folder"))?;
+) -> Result<Vec<PathBuf>, Failure> {
+    fs::create_dir_all(folder).map_err(failed(folder, "make the folder"))?;
     let mut files = Files::of(folder);
     let digest = files.add_matrices(problem)?;
     files.add_problem(problem, &digest, modes)?;
@@ -199,7 +200,7 @@ pub fn write_folder(
         files.add(name, |file| file.write_all(text.as_bytes()))?;
     }
     for before in answers(folder) {
-        fs::remove_file(&before).map_err(SlepcError::io(before, "remove what was there"))?;
+        fs::remove_file(&before).map_err(failed(before, "remove what was there"))?;
     }
     files.finish()?;
     Ok(WRITTEN.map(|name| folder.join(name)).to_vec())
@@ -222,11 +223,11 @@ export OMP_NUM_THREADS=1
 }
 
 /// The digest of K and M.
-pub(crate) fn digest(problem: &HeldProblem<'_>) -> Result<String, SlepcError> {
+pub(crate) fn digest(problem: &HeldProblem<'_>) -> Result<String, Failure> {
     let [stiffness, mass] = [&problem.stiffness, &problem.mass]
         .map(|matrix: &HeldMatrix<'_>| hashed(io::sink(), |file| write_matrix(matrix, file)));
-    let failed = || SlepcError::io("K.petsc", "write it");
-    Ok(joined(stiffness.map_err(failed())?, mass.map_err(failed())?))
+    let not_written = || failed("K.petsc", "write it");
+    Ok(joined(stiffness.map_err(not_written())?, mass.map_err(not_written())?))
 }
 
 fn joined(stiffness: blake3::Hash, mass: blake3::Hash) -> String {

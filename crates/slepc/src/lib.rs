@@ -13,6 +13,5 @@ mod run;
 mod stop;
 
 pub use engine::Slepc;
-pub use error::SlepcError;
 pub use folder::{files_of_folder, write_folder};
 pub use stop::Stop;

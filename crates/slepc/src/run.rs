@@ -4,11 +4,12 @@ use std::collections::VecDeque;
 use std::path::Path;
 use std::process::ExitStatus;
 
+use diagnostic::{Failure, Kind};
 use foreign_program::{ForeignProgram, Limits, ProgramError, named};
 use modal::{EnginePhase, Progress};
 use serde::Deserialize;
 
-use crate::error::SlepcError;
+use crate::error::{not_installed, refused, stopped};
 use crate::folder::DRIVER_FILE;
 use crate::help::{INSTALL, help};
 use crate::stop::Stop;
@@ -46,7 +47,7 @@ pub(crate) fn drive(
     ranks: usize,
     stop: &Stop,
     progress: &mut dyn FnMut(Progress),
-) -> Result<(), SlepcError> {
+) -> Result<(), Failure> {
     let (mpirun, python) = (named(MPIRUN, "mpirun"), named(PYTHON, "python3"));
     let mut program = ForeignProgram::new(&mpirun, folder).args(["-n", &ranks.to_string()]).arg(&python);
     // PETSc's own installation is found by it.
@@ -87,15 +88,14 @@ pub(crate) fn drive(
     };
     match program.run(Limits::default(), || stop.is_asked(), hear) {
         Ok(status) => outcome(status, refusal, Vec::from(last), words, stop),
-        Err(ProgramError::Stopped) => Err(SlepcError::Stopped { command: words }),
-        Err(ProgramError::Start(cause)) => Err(SlepcError::NotInstalled {
-            found: format!("`{}` cannot be started: {cause}", mpirun.to_string_lossy()),
-            help: INSTALL.to_owned(),
-        }),
-        Err(error) => Err(SlepcError::Refused {
-            found: format!("`{words}`: {error}"),
-            help: "see what the system lacks; docs/reference/cluster.md says how to run the driver by hand".to_owned(),
-        }),
+        Err(ProgramError::Stopped) => Err(stopped(&words)),
+        Err(ProgramError::Start(cause)) => {
+            Err(not_installed(&format!("`{}` cannot be started: {cause}", mpirun.to_string_lossy()), INSTALL))
+        }
+        Err(error) => {
+            let help = "see what the system lacks; docs/reference/cluster.md says how to run the driver by hand";
+            Err(refused(&format!("`{words}`: {error}"), help))
+        }
     }
 }
 
@@ -105,19 +105,20 @@ fn outcome(
     last: Vec<String>,
     command: String,
     stop: &Stop,
-) -> Result<(), SlepcError> {
+) -> Result<(), Failure> {
     match refusal {
         // The signal may have come to mpirun, too.
-        _ if stop.is_asked() => Err(SlepcError::Stopped { command }),
-        Some((found, help, true)) => Err(SlepcError::NotInstalled { found, help }),
-        Some((found, help, false)) => Err(SlepcError::Refused { found, help }),
+        _ if stop.is_asked() => Err(stopped(&command)),
+        Some((found, help, true)) => Err(not_installed(&found, help)),
+        Some((found, help, false)) => Err(refused(&found, help)),
         None if status.success() => Ok(()),
         None => {
             let status = in_words(status);
             let help = help(&format!("{status}\n{}", last.join("\n"))).to_owned();
             let shown = &last[last.len().saturating_sub(SHOWN)..];
             let said = if shown.is_empty() { "nothing".to_owned() } else { shown.join("\n") };
-            Err(SlepcError::Failed { command, status, said, help })
+            let words = format!("--solver slepc: `{command}` failed ({status}); it said last:\n{said}");
+            Err(Kind::Run.alone().found(status).help(help).says(words))
         }
     }
 }

@@ -212,7 +212,7 @@ fn a_full_standard_output_is_named() {
         let output = shell(script);
         assert_eq!(output.status.code(), Some(6), "{script}");
         let text = errors(&output);
-        assert!(text.contains("standard output cannot be written: No space left"), "{text}");
+        assert!(text.contains("standard output: cannot be written: No space left"), "{text}");
     }
     let output = shell("flexframe modes examples/ring.toml --json >/dev/full");
     let object: Value = serde_json::from_str(&errors(&output)).unwrap();

@@ -13,7 +13,7 @@ use scene::{Body, Scene};
 
 use crate::arguments::values::{at_time, point};
 use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
-use crate::cli_error::CliError;
+use crate::cli_error::option;
 use crate::output;
 use crate::session::Session;
 use crate::solver_input::SolverInput;
@@ -66,13 +66,13 @@ impl Modes {
     }
 
     /// Refuses what only one body has.
-    fn check_one_body(&self, scene: &Scene) -> Result<(), CliError> {
+    fn check_one_body(&self, scene: &Scene) -> Result<(), Failure> {
         let bodies = format!("a scene of {} bodies", scene.bodies.len());
         if self.mac.is_none() || scene.bodies.len() == 1 {
             return Ok(());
         }
         let (expected, help) = ("a scene of one body, to compare it with another one", "name one: --body NAME");
-        Err(CliError::Option { option: "--mac", found: bodies, expected: expected.to_owned(), help: help.to_owned() })
+        Err(option("--mac", bodies, expected, help))
     }
 
     fn of_bodies(&self, scene: &Scene, session: &mut Session) -> Result<Report, Failure> {
@@ -148,7 +148,7 @@ fn make_folder(folder: &Path) -> Result<(), run::RunError> {
 }
 
 /// Refuses a time of a run that bodies which nothing ties do not need, and one after its end.
-fn check_time(scene: &Scene, time: f64) -> Result<(), CliError> {
+fn check_time(scene: &Scene, time: f64) -> Result<(), Failure> {
     let end = scene.bodies.iter().map(|body| body.time.end).fold(0.0, f64::max);
     let (found, expected, help) = if !scene.has_connections() {
         let help = "leave it out: a body alone has the same modes wherever it is";
@@ -162,5 +162,5 @@ fn check_time(scene: &Scene, time: f64) -> Result<(), CliError> {
     } else {
         return Ok(());
     };
-    Err(CliError::Option { option: "--time", found, expected, help: help.to_owned() })
+    Err(option("--time", found, expected, help))
 }

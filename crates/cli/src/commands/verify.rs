@@ -9,7 +9,6 @@ use flexframe::outputs::{OutputError, Written};
 use flexframe::verify::{cases, list, verify};
 use whole_file::TemporaryFolder;
 
-use crate::cli_error::CliError;
 use crate::output;
 use crate::progress::Bar;
 use crate::session::{Session, Taken};
@@ -54,7 +53,7 @@ impl Verify {
             return session.print(&list(&cases), json);
         }
         output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
-        let temporary = TemporaryFolder::new().map_err(CliError::Output)?;
+        let temporary = TemporaryFolder::new()?;
         let to = output.as_deref().unwrap_or(temporary.path());
         let Session { builder, signals, bar, .. } = &mut session;
         let answer = |words: &[OsString]| {

@@ -10,7 +10,7 @@ use scene::{Measured, Shared};
 
 use crate::arguments::values::positive;
 use crate::arguments::{FileArgs, ModeCountArgs, SceneArgs};
-use crate::cli_error::CliError;
+use crate::cli_error::option;
 use crate::output;
 use crate::session::Session;
 
@@ -64,7 +64,7 @@ impl Fit {
 }
 
 /// Refuses a scene in another folder than that of the scene which it is made of: its paths are relative to it.
-fn check_beside(scene: &Shared, output: &Path) -> Result<(), CliError> {
+fn check_beside(scene: &Shared, output: &Path) -> Result<(), Failure> {
     let folder = |path: &Path| {
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         parent.canonicalize().ok()
@@ -72,10 +72,8 @@ fn check_beside(scene: &Shared, output: &Path) -> Result<(), CliError> {
     if folder(&scene.path).is_some_and(|own| folder(output) == Some(own)) {
         return Ok(());
     }
-    Err(CliError::Option {
-        option: "--output",
-        found: format!("{}, in another folder than the scene", output.display()),
-        expected: "a file beside the scene, since the paths in it are relative to its folder".to_owned(),
-        help: "leave --output out, and set the values with --set, or name a file beside the scene".to_owned(),
-    })
+    let found = format!("{}, in another folder than the scene", output.display());
+    let expected = "a file beside the scene, since the paths in it are relative to its folder";
+    let help = "leave --output out, and set the values with --set, or name a file beside the scene";
+    Err(option("--output", found, expected, help))
 }

@@ -11,7 +11,7 @@ use model::Needs;
 
 use crate::arguments::FileArgs;
 use crate::arguments::values::{finite, view};
-use crate::cli_error::CliError;
+use crate::cli_error::option;
 use crate::output;
 use crate::scene_input::SceneInput;
 use crate::session::Session;
@@ -66,13 +66,8 @@ impl Animate {
         let settings = AnimationSettings { frames, magnification: magnify, from, to, view, coloured };
         let warning = match scene.results()? {
             Some(_) if mode.is_some() => {
-                return Err(CliError::Option {
-                    option: "--mode",
-                    found: "a results file".to_owned(),
-                    expected: "a scene".to_owned(),
-                    help: "name the scene of the run, whose modes are found again".to_owned(),
-                }
-                .into());
+                let help = "name the scene of the run, whose modes are found again";
+                return Err(option("--mode", "a results file", "a scene", help));
             }
             Some(file) => {
                 outputs_of_results(file, files.overwrite).claim_as(&Written::ANIMATION, &output)?;

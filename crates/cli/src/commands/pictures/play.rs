@@ -6,7 +6,6 @@ use flexframe::html_report;
 use flexframe::run::{self, RunSettings};
 use whole_file::TemporaryFolder;
 
-use crate::cli_error::CliError;
 use crate::output;
 use crate::scene_input::SceneInput;
 use crate::served::Served;
@@ -27,7 +26,7 @@ impl Play {
         let Self { scene, port } = self;
         let scene = session.read_scene(scene)?;
         let served = Served::new(port)?;
-        let folder = TemporaryFolder::new().map_err(CliError::Folder)?;
+        let folder = TemporaryFolder::new()?;
         let settings = RunSettings { check: false, ..session.settings(true) };
         let (_, report) = run::run(&scene, folder.path(), &settings, |p| {
             session.signals.heard(p);
