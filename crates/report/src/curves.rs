@@ -2,14 +2,16 @@
 
 use std::path::Path;
 
+use diagnostic::Failure;
 use figures::{ChartStack, LineChart, Scale, Series, Stroke};
 use serde::Serialize;
 use whole_file::write_whole;
 
-use crate::check::finite;
+use crate::Fact;
+use crate::check::{finite, length};
+use crate::error::{empty, not_written};
 use crate::numbers::Numbers;
 use crate::page::filled;
-use crate::{Fact, ReportError};
 
 /// The page that `./dev report-page` builds from `web/src/responses`.
 const PAGE: &str = include_str!("../web/responses.html");
@@ -119,7 +121,7 @@ impl Curves {
     ///
     /// # Errors
     /// Lists that do not fit together, numbers that are not finite, nothing to show.
-    pub fn html(&self, words: PageWords) -> Result<String, ReportError> {
+    pub fn html(&self, words: PageWords) -> Result<String, Failure> {
         self.check()?;
         let of_curve = self.charts.len() * self.frequencies.len();
         let kept = (MOST / of_curve).max(1).min(self.curves.len());
@@ -152,8 +154,8 @@ impl Curves {
     ///
     /// # Errors
     /// Errors of [`Self::html`], and of the system.
-    pub fn write(&self, words: PageWords, path: &Path) -> Result<(), ReportError> {
-        write_whole(path, self.html(words)?).map_err(|source| ReportError::Write { path: path.to_owned(), source })
+    pub fn write(&self, words: PageWords, path: &Path) -> Result<(), Failure> {
+        write_whole(path, self.html(words)?).map_err(|error| not_written(path, &error))
     }
 
     fn titled(&self, title: &str) -> String {
@@ -229,19 +231,15 @@ impl Curves {
         self.resonances.iter().filter(|x| (start..=end).contains(*x)).map(guide).collect()
     }
 
-    fn check(&self) -> Result<(), ReportError> {
+    fn check(&self) -> Result<(), Failure> {
         for (what, count) in
             [("frequencies", self.frequencies.len()), ("charts", self.charts.len()), ("curves", self.curves.len())]
         {
             if count == 0 {
-                return Err(ReportError::Empty { what: what.to_owned() });
+                return Err(empty(what));
             }
         }
         finite("frequencies", self.frequencies.iter().copied())?;
-        let length = |what: &str, found: usize, expected: usize| match found == expected {
-            true => Ok(()),
-            false => Err(ReportError::WrongLength { what: what.to_owned(), found, expected }),
-        };
         for curve in &self.curves {
             let what = format!("curve {:?}", curve.name);
             length(&format!("{what}, units"), curve.units.len(), self.charts.len())?;
@@ -302,11 +300,12 @@ mod tests {
     fn lists_that_do_not_fit_and_numbers_that_are_none_are_refused() {
         let mut short = page(1, 5);
         short.curves[0].values[1].pop();
-        assert!(matches!(short.html(words()), Err(ReportError::WrongLength { found: 4, expected: 5, .. })));
+        let told = |page: Curves| page.html(words()).unwrap_err().to_string();
+        assert!(told(short).contains("has 4 entries where 5 are expected"));
         let mut none = page(1, 5);
         none.curves[0].values[0][3] = f64::NAN;
-        assert!(matches!(none.html(words()), Err(ReportError::NotFinite { index: 3, .. })));
-        assert!(matches!(page(0, 5).html(words()), Err(ReportError::Empty { .. })));
+        assert!(told(none).contains("holds NaN in entry 3 "));
+        assert!(told(page(0, 5)).contains("has no curves"));
     }
 
     #[test]

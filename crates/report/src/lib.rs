@@ -24,7 +24,6 @@ mod thin;
 mod value;
 
 pub use curves::{Chart, Curve, Curves, PageWords};
-pub use error::ReportError;
 pub use page::{html, write};
 pub use report::{File, Report};
 pub use run_page::{

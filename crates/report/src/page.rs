@@ -2,12 +2,14 @@
 
 use std::path::Path;
 
+use diagnostic::Failure;
 use serde::Serialize;
 use whole_file::write_whole;
 
+use crate::RunPage;
 use crate::check::check;
 use crate::data::Data;
-use crate::{ReportError, RunPage};
+use crate::error::not_written;
 
 /// The page that `./dev report-page` builds from `web/src`.
 const PAGE: &str = include_str!("../web/page.html");
@@ -23,7 +25,7 @@ const PLACE: &str = "\"the data of the report\"";
 ///
 /// # Errors
 /// Lists that do not fit together, numbers that are not finite, more than 256 shapes.
-pub fn html(report: &RunPage) -> Result<String, ReportError> {
+pub fn html(report: &RunPage) -> Result<String, Failure> {
     check(report)?;
     Ok(filled(PAGE, PLACE, &Data::new(report)))
 }
@@ -40,6 +42,6 @@ pub(crate) fn filled(page: &str, place: &str, data: &impl Serialize) -> String {
 ///
 /// # Errors
 /// Errors of [`html`], and of the system.
-pub fn write(report: &RunPage, path: &Path) -> Result<(), ReportError> {
-    write_whole(path, html(report)?).map_err(|source| ReportError::Write { path: path.to_owned(), source })
+pub fn write(report: &RunPage, path: &Path) -> Result<(), Failure> {
+    write_whole(path, html(report)?).map_err(|error| not_written(path, &error))
 }

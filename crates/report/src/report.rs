@@ -3,15 +3,17 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use diagnostic::Failure;
 use figures::ChartStack;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value as Json};
 use whole_file::write_whole;
 
+use crate::Fact;
 use crate::curves::{Curves, PageWords};
+use crate::error::not_written;
 use crate::table::Table;
 use crate::value::Value;
-use crate::{Fact, ReportError};
 
 /// Width of the labels of lines.
 const LABELS: usize = 9;
@@ -215,10 +217,10 @@ impl Report {
     ///
     /// # Errors
     /// Errors of the system; curves and charts with numbers that are not finite.
-    pub fn write(&mut self, files: &[File], folder: &Path, program: &str) -> Result<(), ReportError> {
+    pub fn write(&mut self, files: &[File], folder: &Path, program: &str) -> Result<(), Failure> {
         let failed = |path: &Path| {
             let path = path.to_owned();
-            move |source| ReportError::Write { path, source }
+            move |error| not_written(&path, &error)
         };
         if !files.is_empty() {
             std::fs::create_dir_all(folder).map_err(failed(folder))?;
