@@ -114,6 +114,15 @@ fn faults_of_a_case_are_told_with_their_place() {
         assert_eq!(found.status.code(), Some(code), "{to}: {text}");
         assert!(text.contains(words), "{to}: {text}");
     }
+    let points =
+        SPECTRUM.replace("published = [1.4142136, 2.0]", "points = \"read.csv\"").replace("at = [0.25, 0.5]", "");
+    let of_points = folder(&points);
+    let table = of_points.path().join("rectangle/read.csv");
+    fs::write(&table, "frequency,acceleration\n0.25,1.4142136\n0.5,2.0\n").unwrap();
+    assert!(String::from_utf8(verify(&of_points, &[]).stdout).unwrap().contains("2 numbers pass"));
+    fs::write(&table, "frequency,acceleration\n0.25\n").unwrap();
+    let text = String::from_utf8(verify(&of_points, &[]).stderr).unwrap();
+    assert!(text.contains("case.toml:7: compare.points: found \"0.25\" in line 2 of read.csv"), "{text}");
     let found = verify(&folder(SPECTRUM), &["triangle"]);
     let text = String::from_utf8(found.stderr).unwrap();
     assert!(found.status.code() == Some(2) && text.contains("found triangle, expected names of cases"), "{text}");

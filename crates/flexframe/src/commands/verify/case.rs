@@ -60,7 +60,9 @@ struct Comparison {
     quantity: String,
     #[serde(default)]
     unit: String,
+    #[serde(default = "Several::none")]
     published: Several<f64>,
+    points: Option<PathBuf>,
     relative: Option<f64>,
     absolute: Option<f64>,
     value: Option<Several<String>>,
@@ -90,6 +92,10 @@ enum Several<T> {
 }
 
 impl<T> Several<T> {
+    fn none() -> Self {
+        Self::Many(Vec::new())
+    }
+
     fn all(&self) -> &[T] {
         match self {
             Self::One(one) => std::slice::from_ref(one),
@@ -209,7 +215,9 @@ impl Case {
         }
         for comparison in &mut case.compare {
             let line = line_of(&text, &comparison.span());
-            comparison.get_ref().check().map_err(|wrong| Failure::from(wrong.in_file(&path).line(line).help(CURE)))?;
+            let refused = |wrong: Diagnosis| Failure::from(wrong.in_file(&path).line(line).help(CURE));
+            comparison.get_mut().read_points(&case.folder).map_err(refused)?;
+            comparison.get_ref().check().map_err(refused)?;
             comparison.get_mut().line = line;
         }
         Ok(case)
@@ -263,6 +271,40 @@ fn line_of(text: &str, span: &Range<usize>) -> usize {
 }
 
 impl Comparison {
+    /// Takes the published values and their places from a table of two columns, such as one that was read from a figure.
+    fn read_points(&mut self, folder: &Path) -> Result<(), Diagnosis> {
+        let Some(file) = &self.points else { return Ok(()) };
+        let wrong = |found: String, expected: &str| {
+            Err(Kind::Input.alone().key("compare.points").found(found).expected(expected))
+        };
+        if self.at.is_some() || !self.published.all().is_empty() {
+            return wrong("`published` or `at`, too".to_owned(), "`points`, a CSV file, in their place");
+        }
+        let text = match std::fs::read_to_string(folder.join(file)) {
+            Ok(text) => text,
+            Err(error) => return wrong(format!("{}: {error}", file.display()), "a CSV file of the folder"),
+        };
+        let pair = |line: &str| {
+            let (at, value) = line.split_once(',')?;
+            Some((at.trim().parse::<f64>().ok()?, value.trim().parse::<f64>().ok()?))
+        };
+        // The first line has names.
+        let lines = text.lines().enumerate().skip(1).filter(|(_, line)| !line.trim().is_empty());
+        let (mut at, mut published) = (Vec::new(), Vec::new());
+        for (number, line) in lines {
+            let Some(pair) = pair(line) else {
+                return wrong(
+                    format!("{:?} in line {} of {}", line, number + 1, file.display()),
+                    "two numbers: at, value",
+                );
+            };
+            at.push(pair.0);
+            published.push(pair.1);
+        }
+        (self.at, self.published) = (Some(Several::Many(at)), Several::Many(published));
+        Ok(())
+    }
+
     /// Refuses keys that do not go together.
     fn check(&self) -> Result<(), Diagnosis> {
         let wrong = |key: &str, found: &str, expected: &str| {
