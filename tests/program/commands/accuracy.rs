@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use flexframe::run::Round;
 use flexframe::scene::{Scene, assign, without};
 use serde_json::Value;
 use toml::Table;
@@ -36,6 +37,11 @@ fn paste(scene: &Path, settings: &str) -> PathBuf {
     path
 }
 
+/// True if the error after a round is that of the answer: it was kept, or is made to compare.
+fn counts(round: &Value) -> bool {
+    round["kept"] == true || round["change"] == Round::TO_COMPARE
+}
+
 /// The rows of a report are those of the scene with its settings.
 #[track_caller]
 fn assert_same(report: &Value, scene: &Path) {
@@ -66,7 +72,7 @@ fn settings_that_reach_an_accuracy_give_the_same_answer_alone() {
         assert!(found["stopped_by"].is_null() && found["stated"].as_f64().unwrap() < 0.01, "{found}");
         let rounds = found["rounds"].as_array().unwrap();
         let stated = |round: &Value| round["after"].as_f64().unwrap();
-        let kept: Vec<&Value> = rounds.iter().filter(|round| round["kept"] == true).collect();
+        let kept: Vec<&Value> = rounds.iter().filter(|round| counts(round)).collect();
         assert!(kept.windows(2).all(|pair| pair[0]["after"] == pair[1]["before"]), "{found}");
         assert!(stated(&rounds[0]) > 0.01 && stated(kept[kept.len() - 1]) < 0.01, "{found}");
         assert!(rounds.iter().any(|round| round["change"].as_str().unwrap().contains(mended)), "{found}");
@@ -88,9 +94,32 @@ fn a_search_that_is_stopped_leaves_the_best_run() {
     assert_eq!((&found["reached"], &found["stopped_by"]), (&false.into(), &"model".into()), "{found}");
     let rounds = found["rounds"].as_array().unwrap();
     assert!(rounds.iter().filter(|round| round["kept"] == false).count() >= 2, "{found}");
-    let best = rounds.iter().rfind(|round| round["kept"] == true).unwrap();
+    let best = rounds.iter().rfind(|round| counts(round)).unwrap();
     assert_eq!(found["stated"], best["after"]);
     assert_same(&report, &scene);
+}
+
+/// Independent reference: the same scene with forty modes. Modes that are left out ring after a blow, which no check of a row sees: it has 1.4 % where
+/// eight modes are off by 3.6 %.
+#[test]
+fn modes_that_ring_are_found_by_a_run_with_twice_as_many() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene(folder.path(), "blow", (COLUMN, ["flexible = 8", "1.0", "tolerance = 1e-5", ""]));
+    let text = fs::read_to_string(&scene).unwrap().replace("damping_ratio = 0.7\n", "");
+    let text = text.replace("kind = \"ramp\", duration = 3.0", "kind = \"half-sine\", duration = 0.01");
+    fs::write(&scene, text.replace("interval = 1.0", "interval = 0.01")).unwrap();
+    let report = run(&scene, &["--accuracy", "2%"]);
+    let rounds = report["accuracy"]["rounds"].as_array().unwrap();
+    let of = |k: usize, key: &str| rounds[k][key].as_f64().unwrap();
+    assert!(of(0, "after") < 0.02, "{rounds:?}");
+    assert_eq!(
+        (&rounds[1]["change"], &rounds[2]["change"]),
+        (&Round::TO_COMPARE.into(), &"16 modes".into()),
+        "{rounds:?}"
+    );
+    let left_out = of(1, "after") - of(1, "before");
+    assert!((0.03..0.045).contains(&left_out), "{rounds:?}");
+    assert_eq!(report["accuracy"]["reached"], true);
 }
 
 /// The mesh says so at once, and nothing is claimed; a key of the scene asks for the same.

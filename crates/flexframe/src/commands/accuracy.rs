@@ -5,6 +5,7 @@
 //! before it stands. Meshes, modes and static responses that were found are found again in the cache.
 
 mod change;
+mod left_out;
 mod prices;
 mod search;
 mod stated;

@@ -65,6 +65,8 @@ pub(super) struct Facts {
     /// True if the method can have a tolerance.
     pub estimates_error: bool,
     pub mesh_size: Option<f64>,
+    /// True if most of what the modes leave out rings, which static shapes do not.
+    pub modes_ring: bool,
     /// True if the steps were too long for a change.
     pub steps_are_in_the_way: bool,
 }
@@ -134,7 +136,7 @@ fn changes(place: Place, facts: &Facts, accuracy: f64) -> Vec<Change> {
     match place {
         Place::Mesh => Vec::new(),
         Place::Modes => {
-            let shapes = (!facts.has_static_shapes).then_some(Change::StaticShapes);
+            let shapes = (!facts.has_static_shapes && !facts.modes_ring).then_some(Change::StaticShapes);
             shapes.into_iter().chain([Change::Modes(2 * facts.modes)]).collect()
         }
         Place::Steps => match facts.control {
@@ -294,6 +296,7 @@ mod tests {
             end: 1.0,
             estimates_error: true,
             mesh_size: None,
+            modes_ring: false,
             steps_are_in_the_way: false,
         }
     }
@@ -301,7 +304,7 @@ mod tests {
     /// Shares of mesh, modes, steps and model.
     fn error(shares: [f64; 4]) -> BodyError {
         let of = "displacements".to_owned();
-        BodyError { body: 0, shares: shares.map(Some), of, unknown: None, drift: 0.0, unstable: false }
+        BodyError { body: 0, shares: shares.map(Some), of, unknown: None, left_out: None, drift: 0.0, unstable: false }
     }
 
     #[test]
@@ -312,6 +315,8 @@ mod tests {
         assert_eq!(chosen(of_modes, &facts(), &tried), Ok(Change::StaticShapes));
         let shaped = Facts { has_static_shapes: true, ..facts() };
         assert_eq!(chosen(of_modes, &shaped, &tried), Ok(Change::Modes(8)));
+        let ringing = Facts { modes_ring: true, ..facts() };
+        assert_eq!(chosen(of_modes, &ringing, &tried), Ok(Change::Modes(8)));
         assert_eq!(chosen([1e-3, 1e-3, 0.02, 1e-3], &shaped, &tried), Ok(Change::Tolerance(1e-4)));
         let of_model = [1e-3, 1e-3, 1e-3, 0.3];
         assert_eq!(chosen(of_model, &facts(), &tried), Ok(Change::LargeModes));

@@ -30,7 +30,7 @@ struct Price {
 /// finer ones are, too. Nothing is kept of the runs.
 ///
 /// # Errors
-/// As [`run`](super::run).
+/// As [`run`](super::run()).
 pub fn prices(
     scene: &Scene,
     accuracies: &[f64],

@@ -7,19 +7,21 @@ use std::time::Instant;
 
 use diagnostic::Diagnostic;
 use model::{Builder, Model};
-use results::unfinished;
+use results::{Results, unfinished};
 use scene::{BodySource, Choice, Effect, Scene, StepControl, assign, without};
 use toml::Value;
 use whole_file::TemporaryFolder;
 
 use super::change::{Change, Facts, PART, Stop, Tried, next};
+use super::left_out::{OfBody, difference};
 use super::stated::{BodyError, errors};
 use crate::commands::run::{
     AccuracyReport, LargeChoice, Round, RunError, RunProgress, RunReport, RunSettings, StoppedBy, WORTH, check_files,
     run_models,
 };
 use crate::report::rounded;
-use crate::trust::model_error;
+use crate::rows::columns::COLUMNS;
+use crate::trust::{Place, model_error};
 
 /// Runs of a search at the most.
 const ROUNDS: usize = 10;
@@ -32,6 +34,8 @@ pub(super) struct Found {
     models: Vec<Model>,
     report: RunReport,
     errors: Vec<BodyError>,
+    /// True if it was compared with a run that has twice the modes.
+    is_compared: bool,
 }
 
 impl Found {
@@ -142,7 +146,7 @@ impl<'a> Search<'a> {
         }
         let report = run_models(&scene, &models, self.folder, &settings, progress)?;
         let errors = errors(&report, &self.with_mesh);
-        Ok(Found { scene, models, report, errors })
+        Ok(Found { scene, models, report, errors, is_compared: false })
     }
 
     /// Settings that could not reach the accuracy, as they have to be.
@@ -203,9 +207,17 @@ impl<'a> Search<'a> {
     pub fn go_on(&mut self, best: &mut Found, progress: &mut dyn FnMut(RunProgress)) -> Result<Option<Stop>, RunError> {
         let mut tried = Tried::default();
         let mut steps_are_in_the_way = false;
-        while !best.is_below(self.asked) {
+        loop {
+            match (best.is_below(self.asked), best.is_compared) {
+                (true, true) => return Ok(None),
+                (true, false) => {
+                    self.compare(best, progress)?;
+                    continue;
+                }
+                (false, _) => {}
+            }
             let worst = best.errors.iter().find(|error| error.at_most() >= self.asked || error.unstable);
-            let Some(error) = worst.cloned() else { break };
+            let Some(error) = worst.cloned() else { return Ok(None) };
             let change =
                 match next(&error, &Facts { steps_are_in_the_way, ..self.facts(best, error.body) }, self.asked, &tried)
                 {
@@ -250,8 +262,7 @@ impl<'a> Search<'a> {
                         && !change.is_of_steps()
                         && !tried.has_steps();
                     fs::remove_file(unfinished(&results)).ok();
-                    let place = error.diagnosis().key.unwrap_or_else(|| error.without_files());
-                    round.largest = format!("failed: {}", place.lines().next().unwrap_or_default());
+                    round.largest = failure(&error);
                 }
             }
             match round.kept {
@@ -266,7 +277,48 @@ impl<'a> Search<'a> {
             }
             self.rounds.push(round);
         }
-        Ok(None)
+    }
+
+    /// Compares the best run with one that has twice the modes, and adds the difference to its errors.
+    fn compare(&mut self, best: &mut Found, progress: &mut dyn FnMut(RunProgress)) -> Result<(), RunError> {
+        best.is_compared = true;
+        let (started, before) = (Instant::now(), best.stated());
+        let largest = match self.left_out(best, progress) {
+            Ok(left_out) => {
+                for error in &mut best.errors {
+                    let of_body = self.with_mesh.iter().position(|body| *body == error.body);
+                    error.left_out = of_body.and_then(|place| left_out[place]);
+                }
+                best.errors.sort_by(|a, b| b.at_most().total_cmp(&a.at_most()));
+                best.largest()
+            }
+            Err(error @ RunError::Stopped { .. }) => return Err(error),
+            Err(error) => failure(&error),
+        };
+        let (change, after, seconds) = (Round::TO_COMPARE.to_owned(), best.stated(), started.elapsed().as_secs_f64());
+        self.rounds.push(Round { change, before, after, largest, kept: false, seconds });
+        Ok(())
+    }
+
+    /// The largest difference of each body from a run that has twice the modes; `None` where its rows are others.
+    fn left_out(&self, best: &Found, progress: &mut dyn FnMut(RunProgress)) -> Result<Vec<Option<f64>>, RunError> {
+        let mut keys = self.keys.clone();
+        for body in &self.with_mesh {
+            put(&mut keys, Change::Modes(2 * natural(&best.models[*body])).keys(self.name(*body)));
+        }
+        let scene = self.scene(&keys)?;
+        let builder = self.settings.builder.clone();
+        let settings =
+            RunSettings { overwrite: true, large: true, rows_alone: true, builder, ..RunSettings::default() };
+        let models = settings.builder.models(&scene, |p| progress(RunProgress::Build(p)))?;
+        let report = run_models(&scene, &models, self.kept.path(), &settings, progress)?;
+        let open = |path: &Path| Results::open(path, &COLUMNS).map_err(RunError::File);
+        let [results, others] = [open(&best.report.results)?, open(&report.results)?];
+        let of = |body: &usize| {
+            let run = OfBody { results: &results, body: *body, model: &best.models[*body] };
+            difference(run, OfBody { results: &others, model: &models[*body], ..run })
+        };
+        Ok(self.with_mesh.iter().map(of).collect())
     }
 
     fn not_kept(&self, source: io::Error) -> RunError {
@@ -281,7 +333,7 @@ impl<'a> Search<'a> {
             _ => None,
         };
         Facts {
-            modes: model.body.flexible() - model.static_shapes(),
+            modes: natural(model),
             has_static_shapes: model.static_shapes() > 0,
             has_large_modes: !model.large_modes().is_empty(),
             is_without_stiffening: given.effects.choices[Effect::GeometricStiffening] == Choice::Off,
@@ -293,6 +345,10 @@ impl<'a> Search<'a> {
             end: given.time.end,
             estimates_error: found.scene.method().estimates_error,
             mesh_size,
+            modes_ring: found
+                .errors
+                .iter()
+                .any(|error| error.body == body && error.left_out > Some(0.5 * error.share(Place::Modes))),
             steps_are_in_the_way: false,
         }
     }
@@ -348,6 +404,17 @@ impl<'a> Search<'a> {
     }
 }
 
+/// A run that failed, in a few words.
+fn failure(error: &RunError) -> String {
+    let place = error.diagnosis().key.unwrap_or_else(|| error.without_files());
+    format!("failed: {}", place.lines().next().unwrap_or_default())
+}
+
+/// Natural modes of a model.
+fn natural(model: &Model) -> usize {
+    model.body.flexible() - model.static_shapes()
+}
+
 /// The key of modes about a bent rest.
 fn about(body: Option<&str>) -> (String, Option<Value>) {
     Change::BentRest.keys(body).swap_remove(0)
@@ -363,7 +430,7 @@ fn is_better(found: &Found, than: &Found, accuracy: f64) -> bool {
 /// The angle by which an error of the mesh shifts the first vibration of a body by the end of its run at the most, rad.
 fn mesh_phase(end: f64, model: &Model, error: &BodyError) -> Option<f64> {
     let first = model.natural_frequencies().first().copied().filter(|first| *first > 0.0)?;
-    Some(error.share(crate::trust::Place::Mesh) * std::f64::consts::TAU * first * end)
+    Some(error.share(Place::Mesh) * std::f64::consts::TAU * first * end)
 }
 
 /// Keys of a scene that are taken out.

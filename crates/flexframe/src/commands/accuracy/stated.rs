@@ -10,7 +10,7 @@ use crate::commands::run::RunReport;
 use crate::trust::Place;
 
 /// A point that moves by less than this part of the largest displacement of its body counts against that part.
-const STILL: f64 = 1e-2;
+pub(super) const STILL: f64 = 1e-2;
 
 /// The error of a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,8 @@ pub(super) struct BodyError {
     pub of: String,
     /// The part that is not known, in words.
     pub unknown: Option<String>,
+    /// The part by which modes that are left out ring; `None` until it is compared.
+    pub left_out: Option<f64>,
     /// The part of the model by which vibrations come out of step.
     pub drift: f64,
     /// True if the full body is unstable in a row, or may be.
@@ -32,7 +34,8 @@ pub(super) struct BodyError {
 impl BodyError {
     /// The sum of the shares; `None` where one is not known.
     pub fn whole(&self) -> Option<f64> {
-        self.shares.iter().copied().sum()
+        let sum: Option<f64> = self.shares.iter().copied().sum();
+        Some(sum? + self.left_out.unwrap_or(0.0))
     }
 
     /// The same with what is not known as infinite.
@@ -42,7 +45,8 @@ impl BodyError {
 
     /// The share of a place; 0 where it is not known.
     pub fn share(&self, place: Place) -> f64 {
-        self.shares[index(place)].unwrap_or(0.0)
+        let left_out = self.left_out.filter(|_| place == Place::Modes).unwrap_or(0.0);
+        self.shares[index(place)].unwrap_or(0.0) + left_out
     }
 
     /// The places, the largest share first.
@@ -91,7 +95,7 @@ fn of_body(report: &RunReport, body: usize) -> BodyError {
         (None, None) => None,
     };
     let of = if let Some(name) = name { format!("{of} of body {name}") } else { of };
-    BodyError { body, shares, of, unknown, drift, unstable: rows.iter().any(is_unstable) }
+    BodyError { body, shares, of, unknown, left_out: None, drift, unstable: rows.iter().any(is_unstable) }
 }
 
 /// True if a vibration of the full body grows, or if it has lost stiffness and nothing tells whether its spin holds it.

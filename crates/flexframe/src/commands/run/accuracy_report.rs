@@ -70,6 +70,16 @@ pub enum StoppedBy {
     Rounds,
 }
 
+impl Round {
+    /// The change of a run that is made to compare, and never kept.
+    pub const TO_COMPARE: &str = "twice the modes, to compare";
+
+    /// True if the stated error after it is that of the answer.
+    fn counts(&self) -> bool {
+        self.kept || self.change == Self::TO_COMPARE
+    }
+}
+
 impl StoppedBy {
     /// Its name in JSON.
     pub fn name(self) -> &'static str {
@@ -117,7 +127,7 @@ impl fmt::Display for AccuracyReport {
             .text_only("before", Form::Plain, self.rounds.iter().map(|round| round.before.map(percent)))
             .text_only("stated", Form::Plain, self.rounds.iter().map(after))
             .text_only("most by", Form::Plain, rounds(|round| round.largest.clone()))
-            .text_only("", Form::Plain, rounds(|round| if round.kept { "" } else { "taken back" }.to_owned()))
+            .text_only("", Form::Plain, rounds(|round| if round.counts() { "" } else { "taken back" }.to_owned()))
             .text_only("seconds", Form::Fixed(2), self.rounds.iter().map(|round| round.seconds));
         report.table(table);
         if !self.settings.is_empty() {

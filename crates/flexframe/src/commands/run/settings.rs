@@ -36,7 +36,7 @@ pub struct RunSettings {
     /// more than its reduction did ([`check`](crate::check)).
     pub check: bool,
     /// Error of the answer that is asked for: more rows are checked, whatever that costs, and other large modes are looked for where the model
-    /// takes a part of it ([`accuracy::run`](crate::accuracy::run)).
+    /// takes a part of it ([`accuracy::run`](crate::accuracy::run())).
     pub accuracy: Option<f64>,
     /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
     pub stop: Arc<AtomicBool>,
