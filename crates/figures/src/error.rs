@@ -17,27 +17,22 @@ pub enum FigureError {
     /// The drawing library failed on a picture held in memory.
     #[error("cannot draw the figure: {reason}; its numbers are in the tables that come with it: please report this")]
     Draw { reason: String },
-    /// Nothing to draw.
-    #[error("the figure \"{figure}\" has no {what}; give it at least one")]
-    Empty { figure: String, what: &'static str },
-    /// A NaN or an infinity in the data. `index`: from 0.
-    #[error("the figure \"{figure}\" has a value that is not finite: {what}, entry {index}")]
-    NotFinite { figure: String, what: String, index: usize },
-    /// A logarithmic axis cannot show zero or a negative number. `index`: from 0.
-    #[error(
-        "the figure \"{figure}\" has a logarithmic axis but series \"{series}\" holds {value}, entry {index}; \
-         leave the entry out or use a linear axis"
-    )]
-    NotPositive { figure: String, series: String, index: usize, value: f64 },
-    /// Lists that belong together differ in length.
-    #[error("the figure \"{figure}\": {what} has {found} entries where {expected} are expected")]
-    WrongLength { figure: String, what: String, expected: usize, found: usize },
-    /// A triangle, edge or trace names a point that is not there. `index`: from 0.
-    #[error("the figure \"{figure}\": {what} names point {index}, but there are {count} points")]
-    NoSuchPoint { figure: String, what: &'static str, index: usize, count: usize },
+    /// Data that cannot be drawn, in words.
+    #[error("the figure \"{figure}\" {words}")]
+    Unfit { figure: String, words: String },
 }
 
 impl FigureError {
+    /// Data of a figure with this title that cannot be drawn.
+    pub(crate) fn unfit(figure: &str, words: impl Into<String>) -> Self {
+        Self::Unfit { figure: figure.to_owned(), words: words.into() }
+    }
+
+    /// A figure without any of something.
+    pub(crate) fn empty(figure: &str, what: &str) -> Self {
+        Self::unfit(figure, format!("has no {what}; give it at least one"))
+    }
+
     /// With what helps against the error.
     pub(crate) fn system(path: &Path, error: &io::Error) -> Self {
         use io::ErrorKind::*;

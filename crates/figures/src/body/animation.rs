@@ -11,7 +11,7 @@ use whole_file::WholeFile;
 
 use crate::FigureError;
 use crate::body::key::{self, colour_axis, draw_key, shade};
-use crate::body::render::{Canvas, Grades, check_indices, check_points, plain_colours, surface_colours};
+use crate::body::render::{Canvas, Grades, check_index, check_indices, check_points, plain_colours, surface_colours};
 use crate::body::shapes::EDGE;
 use crate::body::view::{View, Window};
 use crate::chart::axis::{Axis, round_step};
@@ -72,8 +72,7 @@ impl Animation<'_> {
     /// if that is negative, to the largest; a bar below the body shows them.
     ///
     /// # Errors
-    /// [`FigureError::Empty`] without frames, [`FigureError::WrongLength`],
-    /// [`FigureError::NoSuchPoint`], [`FigureError::NotFinite`], [`FigureError::Write`].
+    /// [`FigureError::Unfit`] without frames, and of lists that do not fit; [`FigureError::Write`].
     pub fn save_gif(&self, path: impl AsRef<Path>) -> Result<(), FigureError> {
         let path = path.as_ref();
         self.check()?;
@@ -122,15 +121,13 @@ impl Animation<'_> {
     fn check(&self) -> Result<(), FigureError> {
         let figure = self.title.as_str();
         let Some(first) = self.frames.first() else {
-            return Err(FigureError::Empty { figure: figure.into(), what: "frame" });
+            return Err(FigureError::empty(figure, "frame"));
         };
         let count = first.points.len();
         check_indices(figure, "a triangle", self.triangles, count)?;
         check_indices(figure, "a triangle", self.plain_triangles, count)?;
         check_indices(figure, "an edge", self.edges, count)?;
-        if let Some(index) = self.traced_point.filter(|&index| index >= count) {
-            return Err(FigureError::NoSuchPoint { figure: figure.into(), what: "the trace", index, count });
-        }
+        check_index(figure, "the trace", self.traced_point, count)?;
         for (i, frame) in self.frames.iter().enumerate() {
             check_points(figure, &format!("frame {i}"), count, &frame.points, &frame.values)?;
         }

@@ -254,13 +254,26 @@ fn each_dot(corners: &Corners, [width, height]: [usize; 2], mut call: impl FnMut
 /// Refuses a surface whose indices do not fit, before it is drawn.
 pub(crate) fn check_indices<const N: usize>(
     figure: &str,
-    what: &'static str,
+    what: &str,
     cells: &[[u32; N]],
     count: usize,
 ) -> Result<(), FigureError> {
-    match cells.iter().flatten().map(|&i| i as usize).find(|&i| i >= count) {
+    check_index(figure, what, cells.iter().flatten().map(|&i| i as usize), count)
+}
+
+/// Refuses the numbers of points that are not there.
+pub(crate) fn check_index(
+    figure: &str,
+    what: &str,
+    indices: impl IntoIterator<Item = usize>,
+    count: usize,
+) -> Result<(), FigureError> {
+    match indices.into_iter().find(|index| *index >= count) {
         None => Ok(()),
-        Some(index) => Err(FigureError::NoSuchPoint { figure: figure.into(), what, index, count }),
+        Some(index) => Err(FigureError::unfit(
+            figure,
+            format!("has {what} that names point {index}, but there are {count} points"),
+        )),
     }
 }
 
@@ -274,14 +287,16 @@ pub(crate) fn check_points(
 ) -> Result<(), FigureError> {
     for (list, found) in [("points", points.len()), ("values", values.len())] {
         if found != count {
-            let what = format!("{what}: {list}");
-            return Err(FigureError::WrongLength { figure: figure.into(), what, expected: count, found });
+            let words = format!("has {what}: {list} with {found} entries where {count} are expected");
+            return Err(FigureError::unfit(figure, words));
         }
     }
     let finite = |i: &usize| points[*i].iter().all(|x| x.is_finite()) && values[*i].is_finite();
     match (0..count).find(|i| !finite(i)) {
         None => Ok(()),
-        Some(index) => Err(FigureError::NotFinite { figure: figure.into(), what: what.into(), index }),
+        Some(index) => {
+            Err(FigureError::unfit(figure, format!("has a value that is not finite: {what}, entry {index}")))
+        }
     }
 }
 

@@ -60,8 +60,7 @@ impl ShapeGrid<'_> {
     /// up to 20 000 visible triangles and lines together, about two megabytes; else bitmaps. Texts are texts.
     ///
     /// # Errors
-    /// [`FigureError::Empty`] without panels or columns, [`FigureError::WrongLength`],
-    /// [`FigureError::NoSuchPoint`], [`FigureError::NotFinite`], [`FigureError::Write`].
+    /// [`FigureError::Unfit`] without panels or columns, and of lists that do not fit; [`FigureError::Write`].
     pub fn save(&self, stem: impl AsRef<Path>) -> Result<[PathBuf; 3], FigureError> {
         self.check()?;
         save(self, stem.as_ref())
@@ -71,7 +70,7 @@ impl ShapeGrid<'_> {
         let figure = self.title.as_str();
         if self.columns == 0 || self.panels.is_empty() {
             let what = if self.columns == 0 { "column" } else { "panel" };
-            return Err(FigureError::Empty { figure: figure.into(), what });
+            return Err(FigureError::empty(figure, what));
         }
         let count = self.panels[0].points.len();
         check_indices(figure, "a triangle", self.triangles, count)?;

@@ -39,10 +39,10 @@ impl ChartGrid {
     /// Writes `<stem>.svg`, `<stem>.pdf` and `<stem>.png` and returns the three paths.
     ///
     /// # Errors
-    /// [`FigureError::Empty`] without columns or any point, [`FigureError::NotFinite`], [`FigureError::Write`].
+    /// [`FigureError::Unfit`] without columns or any point, and of numbers that are not finite; [`FigureError::Write`].
     pub fn save(&self, stem: impl AsRef<Path>) -> Result<[PathBuf; 3], FigureError> {
         if self.columns == 0 {
-            return Err(FigureError::Empty { figure: self.title.clone(), what: "column" });
+            return Err(FigureError::empty(&self.title, "column"));
         }
         check_series(&self.title, &self.series, [Scale::Linear; 2])?;
         save(self, stem.as_ref())

@@ -68,8 +68,8 @@ impl LineChart {
     /// the highest and lowest point of every half pixel, so that peaks survive.
     ///
     /// # Errors
-    /// [`FigureError::Empty`] without any point, [`FigureError::NotFinite`],
-    /// [`FigureError::NotPositive`] on a logarithmic axis, [`FigureError::Write`].
+    /// [`FigureError::Unfit`] without any point, of numbers that are not finite, and not positive on a logarithmic axis;
+    /// [`FigureError::Write`].
     pub fn save(&self, stem: impl AsRef<Path>) -> Result<[PathBuf; 3], FigureError> {
         self.check()?;
         save(self, stem.as_ref())
@@ -190,17 +190,23 @@ fn without_points(series: &[Series]) -> bool {
 /// Refuses series that cannot be drawn over axes of these scales, x and y.
 pub(crate) fn check_series(title: &str, series: &[Series], scales: [Scale; 2]) -> Result<(), FigureError> {
     if without_points(series) {
-        return Err(FigureError::Empty { figure: title.to_owned(), what: "point" });
+        return Err(FigureError::empty(title, "point"));
     }
     for series in series {
         for (index, &(x, y)) in series.points.iter().enumerate() {
             for (value, scale) in [x, y].into_iter().zip(scales) {
-                let (figure, label) = (title.to_owned(), series.label.clone());
+                let label = &series.label;
                 if !value.is_finite() {
-                    return Err(FigureError::NotFinite { figure, what: format!("series \"{label}\""), index });
+                    let words = format!("has a value that is not finite: series \"{label}\", entry {index}");
+                    return Err(FigureError::unfit(title, words));
                 }
                 if scale == Scale::Log && value <= 0.0 {
-                    return Err(FigureError::NotPositive { figure, series: label, index, value });
+                    return Err(FigureError::unfit(
+                        title,
+                        format!(
+                            "has a logarithmic axis but series \"{label}\" holds {value}, entry {index}; leave the entry out or use a linear axis"
+                        ),
+                    ));
                 }
             }
         }

@@ -44,7 +44,7 @@ impl ChartStack {
 
     fn check(&self) -> Result<(), FigureError> {
         if self.charts.is_empty() {
-            return Err(FigureError::Empty { figure: self.title.clone(), what: "chart" });
+            return Err(FigureError::empty(&self.title, "chart"));
         }
         self.charts.iter().try_for_each(LineChart::check)
     }
