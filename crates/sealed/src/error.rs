@@ -39,15 +39,12 @@ pub enum SealedError {
         path.display(), format.noun, format.version, format.again
     )]
     OtherVersion { path: PathBuf, format: &'static Format, found: String },
-    /// A file that has been changed or damaged.
+    /// A file that has been changed or damaged, or lacks a dataset.
     #[error(
         "{}: the {} is damaged, or another program has changed it: {what}; take an unchanged copy, or {}",
         path.display(), format.noun, format.again
     )]
     Damaged { path: PathBuf, format: &'static Format, what: String },
-    /// A dataset that is not there.
-    #[error("{}: the {} has no dataset {dataset}; {}", path.display(), format.noun, format.again)]
-    Missing { path: PathBuf, format: &'static Format, dataset: String },
     /// Datasets that were declared otherwise than they are written.
     #[error("{}: the dataset {dataset} was declared otherwise: {what}", path.display())]
     Declared { path: PathBuf, dataset: String, what: &'static str },
@@ -78,7 +75,6 @@ impl SealedError {
             | Self::NoSeal { path, .. }
             | Self::OtherVersion { path, .. }
             | Self::Damaged { path, .. }
-            | Self::Missing { path, .. }
             | Self::Declared { path, .. } => path,
         }
     }

@@ -92,7 +92,7 @@ impl SealedFile {
     /// Reads a dataset, whose content must be what was sealed.
     ///
     /// # Errors
-    /// [`SealedError::Missing`], [`SealedError::Damaged`] (also where its numbers are of another kind),
+    /// [`SealedError::Damaged`] (also without the dataset, and where its numbers are of another kind),
     /// [`SealedError::System`].
     pub fn read<T: Number>(&self, dataset: &str) -> Result<Array<T>, SealedError> {
         let place = self.place::<T>(dataset)?;
@@ -129,7 +129,7 @@ impl SealedFile {
     /// Writes numbers of a dataset from its number `first` on.
     ///
     /// # Errors
-    /// [`SealedError::Declared`] where there are more than it has room for, [`SealedError::Missing`], [`SealedError::System`].
+    /// [`SealedError::Declared`] where there are more than it has room for, [`SealedError::Damaged`], [`SealedError::System`].
     pub fn write_at<T: Number>(&self, dataset: &str, first: usize, values: &[T]) -> Result<(), SealedError> {
         let place = self.place::<T>(dataset)?;
         if place.shape.iter().product::<usize>() < first + values.len() {
@@ -203,7 +203,7 @@ impl SealedFile {
     }
 
     fn missing(&self, dataset: &str) -> SealedError {
-        SealedError::Missing { path: self.path.clone(), format: self.format, dataset: dataset.to_owned() }
+        self.damaged(format!("it has no dataset {dataset}"))
     }
 
     fn no_room(&self, dataset: &str) -> SealedError {

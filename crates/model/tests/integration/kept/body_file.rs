@@ -286,12 +286,12 @@ fn a_body_file_of_another_version_or_with_a_part_missing_is_refused() {
     fs::write(&path, &whole).unwrap();
     rewritten(&path, |name| !name.ends_with("/shapes"), str::to_owned);
     let missing = message(folder.path(), file, MODES, SPIN);
-    assert!(missing.contains("the body file has no dataset answers/") && missing.contains("/shapes"), "{missing}");
+    assert!(missing.contains("it has no dataset answers/") && missing.contains("/shapes"), "{missing}");
 
     fs::write(&path, &whole).unwrap();
     rewritten(&path, |name| name != "mesh/tetrahedra", str::to_owned);
     let missing = message(folder.path(), file, MODES, SPIN);
-    assert!(missing.contains("the body file has no dataset mesh/tetrahedra"), "{missing}");
+    assert!(missing.contains("it has no dataset mesh/tetrahedra"), "{missing}");
 
     fs::write(&path, &whole[..whole.len() - 1]).unwrap();
     let cut = message(folder.path(), file, MODES, SPIN);
