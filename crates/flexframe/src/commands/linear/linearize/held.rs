@@ -19,19 +19,9 @@ use super::channels::{
 use super::settings::LinearSettings;
 use super::state::{State, damping_in_words};
 use crate::commands::linear::names::is_asked;
-use base::{TRANSLATIONS, at_point, base_channels};
+use base::base_channels;
 use driven::Driven;
 use rigid::{acts_on, rigid_motions};
-
-/// How an input moves the support.
-enum Moved {
-    /// By an acceleration of all of it, along the axes of the body.
-    Along(Vector3<f64>),
-    /// By a motion of the base.
-    Base(usize),
-    /// As the drive does.
-    Driven,
-}
 
 /// The equations about rest under the loads of a time, or about the spin of a drive then.
 pub(super) fn of_held(
@@ -81,34 +71,34 @@ pub(super) fn of_held(
     // Accelerations that an input gives all of the support, along the axes of the body: the first of a load that stands for them.
     let base = base_channels(body);
     let in_spin = drive.is_some_and(|driven| driven.is_spin());
-    let by_loads: Vec<Vector3<f64>> = match in_spin {
-        // Outputs in a spin are as seen from the body.
-        true => vec![Vector3::zeros(); usual_inputs],
-        false => base_accelerations(body, model).iter().map(|global| initial.attitude.to_body(global)).collect(),
+    // Motions of the frame: an acceleration of it by each input, along its axes. Outputs in a spin are as seen from the body.
+    let part = f64::from(u8::from(!in_spin));
+    let by_load = |global: &Vector3<f64>| {
+        let along = initial.attitude.to_body(global) * part;
+        [along.x, along.y, along.z, 0.0, 0.0, 0.0]
     };
+    let mut moved: Vec<[f64; 6]> = base_accelerations(body, model).iter().map(by_load).collect();
     let shakes = |asked: &String| base.iter().any(|channel| is_asked(&channel.name, asked));
-    let has_base = by_loads.iter().any(|of_load| *of_load != Vector3::zeros()) || settings.inputs.iter().any(shakes);
+    let has_base = moved.iter().flatten().any(|part| *part != 0.0) || settings.inputs.iter().any(shakes);
     let names = (1..=r).map(|k| format!("rigid{k}")).chain((1..=nf).map(|k| format!("mode{k}")));
     let unit = unit_of_coordinate(body);
     let mut coordinates: Vec<Channel> = names.map(|name| Channel::new(name, unit.clone())).collect();
     let (stiffness, mut damping) = (of_modes(&rest.stiffness), of_modes(&rest.damping));
     let (mut outputs, mut relative) = (Vec::new(), Vec::new());
-    let mut arms = Vec::new();
     let rows = BodyRows::new(body, model, modal_displacement, true);
-    for ((name, shapes), (_, point)) in rows.points().iter().zip(&model.points) {
+    let points = rows.points();
+    for (name, shapes) in &points {
         let shapes = shapes.each_ref().map(|row| over(row));
         outputs.extend(point_outputs(body, name, &shapes));
         if has_base && !in_spin {
             relative.extend(relative_outputs(body, name, &shapes));
         }
-        arms.push(model.arm(point, modal_displacement));
     }
     let motions = outputs.len();
     outputs.extend(rows.stresses().into_iter().map(|(of, row)| Output::new(of, Rate::Place, over(&row))));
     let usual_outputs = outputs.len();
     let first_relative = outputs.len();
     outputs.extend(relative);
-    let mut accelerations: Vec<Moved> = by_loads.into_iter().map(Moved::Along).collect();
 
     // Of a body that only its modes move: base and drive, and the reaction, which the rows of the frame are.
     let mut more_inputs = Vec::new();
@@ -116,11 +106,11 @@ pub(super) fn of_held(
         let AtRest { mass, damping: rates, stiffness: places, driven: along, .. } = &rest;
         let mut direct: Vec<[f64; 6]> = unit_forces.iter().map(|unit| std::array::from_fn(|i| -unit[i])).collect();
         // A base that tilts a spin changes more than accelerations.
-        let known = if in_spin { TRANSLATIONS } else { base.len() };
+        let known = if in_spin { 3 } else { base.len() };
         for (motion, channel) in base.into_iter().enumerate().take(known) {
             columns.push((0..n).map(|k| if k < nf { -mass[(6 + k, motion)] } else { 0.0 }).collect());
             direct.push(std::array::from_fn(|i| mass[(i, motion)]));
-            accelerations.push(if in_spin { Moved::Along(Vector3::zeros()) } else { Moved::Base(motion) });
+            moved.push(std::array::from_fn(|i| if i == motion { part } else { 0.0 }));
             inputs.push(channel);
         }
         let of_drive = |matrix: &Mat<f64>, i: usize| -> f64 {
@@ -130,7 +120,7 @@ pub(super) fn of_held(
             (0..nf).for_each(|k| damping[(k, nf)] = of_drive(rates, 6 + k));
             columns.push((0..n).map(|k| if k < nf { -of_drive(mass, 6 + k) } else { 1.0 }).collect());
             direct.push(std::array::from_fn(|i| of_drive(mass, i)));
-            accelerations.push(Moved::Driven);
+            moved.push(along.map_or([0.0; 6], |along| along.map(|of| of * part)));
             let [input, coordinate] = driven.channels(body);
             inputs.push(input);
             let mut row = vec![0.0; n];
@@ -147,21 +137,17 @@ pub(super) fn of_held(
         }
     }
     // Accelerations are absolute: base and drive add theirs; those relative to the support have none of the base.
-    for (point, arm) in arms.iter().enumerate() {
-        let of_driven = asked_drive.as_ref().map_or_else(Vector3::zeros, |driven| driven.at_point(arm));
-        let added: Vec<[Vector3<f64>; 2]> = accelerations
-            .iter()
-            .map(|moved| match moved {
-                Moved::Along(acceleration) => [*acceleration, Vector3::zeros()],
-                Moved::Base(motion) => [at_point(arm, *motion), Vector3::zeros()],
-                Moved::Driven => [of_driven, of_driven],
-            })
-            .collect();
-        for axis in 0..3 {
-            let absolute = motions / arms.len() * point + 6 + axis;
-            for (kind, output) in [absolute, first_relative + 3 * point + axis].into_iter().enumerate() {
-                let direct: Vec<f64> = added.iter().map(|of_input| of_input[kind][axis]).collect();
-                if (kind == 0 || has_base && !in_spin) && direct.iter().any(|x| *x != 0.0) {
+    let mut relative = vec![[0.0; 6]; moved.len()];
+    if let (Some(_), Some(last), Some(of_drive)) = (asked_drive, relative.last_mut(), moved.last()) {
+        *last = *of_drive;
+    }
+    for (point, (_, rows)) in points.iter().enumerate() {
+        for (axis, row) in rows.iter().enumerate() {
+            let absolute = motions / points.len() * point + 6 + axis;
+            for (added, output) in [(&moved, absolute), (&relative, first_relative + 3 * point + axis)] {
+                let along = |of: &[f64; 6]| of.iter().zip(row).map(|(of, row)| of * row).sum::<f64>();
+                let direct: Vec<f64> = added.iter().map(along).collect();
+                if direct.iter().any(|x| *x != 0.0) && (output == absolute || has_base && !in_spin) {
                     outputs[output].direct = direct;
                 }
             }

@@ -1,24 +1,14 @@
 //! Accelerations of the base of a held body as inputs, Eq. (F10).
 
 use linear::Channel;
-use nalgebra::Vector3;
 use scene::Body;
 
 use crate::commands::linear::linearize::channels::along_axes;
 use crate::rows::units::UnitLabels;
-
-/// The number of translations of a base.
-pub(super) const TRANSLATIONS: usize = 3;
 
 /// The motions of a base: translations along the axes of the body, then turns about them through its origin.
 pub(super) fn base_channels(body: &Body) -> Vec<Channel> {
     let UnitLabels { length, time, .. } = (&body.units).into();
     let translations = along_axes("base.acceleration", &format!("{length}/{time}²"));
     translations.into_iter().chain(along_axes("base.angular_acceleration", &format!("rad/{time}²"))).collect()
-}
-
-/// The acceleration that a motion of the base gives a point.
-pub(super) fn at_point(arm: &Vector3<f64>, motion: usize) -> Vector3<f64> {
-    let axis = Vector3::ith(motion % 3, 1.0);
-    if motion < TRANSLATIONS { axis } else { axis.cross(arm) }
 }

@@ -3,7 +3,6 @@
 use dynamics::DrivenMotion;
 use linear::Channel;
 use model::Model;
-use nalgebra::Vector3;
 use scene::Body;
 
 use crate::rows::units::UnitLabels;
@@ -36,14 +35,5 @@ impl Driven {
             DrivenMotion::Slide { .. } => (length, "drive.position"),
         };
         [Channel::new(Self::INPUT, format!("{unit}/{time}²")), Channel::new(name, unit)]
-    }
-
-    /// The acceleration that a unit of its own gives a point; none in a spin, whose outputs are as seen from the body.
-    pub fn at_point(&self, arm: &Vector3<f64>) -> Vector3<f64> {
-        match self.motion {
-            DrivenMotion::Slide { direction } => direction,
-            DrivenMotion::Turn { .. } if self.is_spin() => Vector3::zeros(),
-            DrivenMotion::Turn { axis } => axis.cross(arm),
-        }
     }
 }
