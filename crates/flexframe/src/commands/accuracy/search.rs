@@ -295,6 +295,11 @@ impl<'a> Search<'a> {
             Err(error @ RunError::Stopped { .. }) => return Err(error),
             Err(error) => failure(&error),
         };
+        if best.errors.iter().any(|error| error.left_out.is_none()) {
+            let words = "the vibrations of further modes: there is no run with twice as many to compare with";
+            self.left_out.retain(|other| other != words);
+            self.left_out.push(words.to_owned());
+        }
         let (change, after, seconds) = (Round::TO_COMPARE.to_owned(), best.stated(), started.elapsed().as_secs_f64());
         self.rounds.push(Round { change, before, after, largest, kept: false, seconds });
         Ok(())
