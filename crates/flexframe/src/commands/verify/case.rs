@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use diagnostic::{Diagnosis, Failure, Kind};
+use diagnostic::{Failure, Kind};
 use report::quantity;
 use serde::Deserialize;
 use toml::Spanned;
@@ -215,10 +215,10 @@ impl Case {
         }
         for comparison in &mut case.compare {
             let line = line_of(&text, &comparison.span());
-            let refused = |wrong: Diagnosis| Failure::from(wrong.in_file(&path).line(line).help(CURE));
-            comparison.get_mut().read_points(&case.folder).map_err(refused)?;
-            comparison.get_ref().check().map_err(refused)?;
-            comparison.get_mut().line = line;
+            let comparison = comparison.get_mut();
+            comparison.line = line;
+            comparison.read_points(&case.folder)?;
+            comparison.check(&path)?;
         }
         Ok(case)
     }
@@ -272,17 +272,15 @@ fn line_of(text: &str, span: &Range<usize>) -> usize {
 
 impl Comparison {
     /// Takes the published values and their places from a table of two columns, such as one that was read from a figure.
-    fn read_points(&mut self, folder: &Path) -> Result<(), Diagnosis> {
+    fn read_points(&mut self, folder: &Path) -> Result<(), Failure> {
         let Some(file) = &self.points else { return Ok(()) };
-        let wrong = |found: String, expected: &str| {
-            Err(Kind::Input.alone().key("compare.points").found(found).expected(expected))
-        };
+        let wrong = |found: &str, expected: &str| Err(self.wrong(&folder.join(FILE), "points", found, expected));
         if self.at.is_some() || !self.published.all().is_empty() {
-            return wrong("`published` or `at`, too".to_owned(), "`points`, a CSV file, in their place");
+            return wrong("`published` or `at`, too", "`points`, a CSV file, in their place");
         }
         let text = match std::fs::read_to_string(folder.join(file)) {
             Ok(text) => text,
-            Err(error) => return wrong(format!("{}: {error}", file.display()), "a CSV file of the folder"),
+            Err(error) => return wrong(&format!("{}: {error}", file.display()), "a CSV file of the folder"),
         };
         let pair = |line: &str| {
             let (at, value) = line.split_once(',')?;
@@ -294,7 +292,7 @@ impl Comparison {
         for (number, line) in lines {
             let Some(pair) = pair(line) else {
                 return wrong(
-                    format!("{:?} in line {} of {}", line, number + 1, file.display()),
+                    &format!("{line:?} in line {} of {}", number + 1, file.display()),
                     "two numbers: at, value",
                 );
             };
@@ -305,11 +303,15 @@ impl Comparison {
         Ok(())
     }
 
+    /// The refusal of one of its keys.
+    fn wrong(&self, file: &Path, key: &str, found: &str, expected: &str) -> Failure {
+        let wrong = Kind::Input.of(file).line(self.line).key(format!("compare.{key}"));
+        wrong.found(found).expected(expected).help(CURE).into()
+    }
+
     /// Refuses keys that do not go together.
-    fn check(&self) -> Result<(), Diagnosis> {
-        let wrong = |key: &str, found: &str, expected: &str| {
-            Err(Kind::Input.alone().key(format!("compare.{key}")).found(found).expected(expected))
-        };
+    fn check(&self, file: &Path) -> Result<(), Failure> {
+        let wrong = |key: &str, found: &str, expected: &str| Err(self.wrong(file, key, found, expected));
         let (count, tolerances) = (self.published.all().len(), [self.relative, self.absolute]);
         let is_tolerance = |tolerance: &f64| *tolerance > 0.0 && tolerance.is_finite();
         if tolerances.iter().flatten().filter(|tolerance| is_tolerance(tolerance)).count() != 1 {
