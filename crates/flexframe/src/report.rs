@@ -11,58 +11,6 @@ use serde::{Serialize, Serializer};
 
 pub use ::report::{File, Form, Report, Table, Value, quantity};
 
-/// Reports of the bodies of a scene, in its order. As JSON it is the report of a single body, and otherwise an object with the list
-/// `bodies`, each with its `name`.
-#[derive(Debug, Clone)]
-pub struct OfBodies<R>(pub Vec<(Option<String>, R)>);
-
-impl<R: fmt::Display> fmt::Display for OfBodies<R> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, (name, report)) in self.0.iter().enumerate() {
-            if i > 0 {
-                f.write_str("\n\n")?;
-            }
-            if let Some(name) = name {
-                writeln!(f, "body {name}")?;
-            }
-            write!(f, "{report}")?;
-        }
-        Ok(())
-    }
-}
-
-/// A report with the name of its body.
-#[derive(Serialize)]
-struct Named<'a, R> {
-    name: Option<&'a str>,
-    #[serde(flatten)]
-    report: &'a R,
-}
-
-impl<R: Serialize> Serialize for OfBodies<R> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Bodies<'a, R> {
-            bodies: Vec<Named<'a, R>>,
-        }
-        match &self.0[..] {
-            [(_, report)] => report.serialize(serializer),
-            several => {
-                let bodies = several.iter().map(|(name, report)| Named { name: name.as_deref(), report });
-                Bodies { bodies: bodies.collect() }.serialize(serializer)
-            }
-        }
-    }
-}
-
-/// Reports with the names of their bodies.
-pub(crate) fn list_of_named<R: Serialize, S: Serializer>(
-    reports: &[(Option<String>, R)],
-    serializer: S,
-) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(reports.iter().map(|(name, report)| Named { name: name.as_deref(), report }))
-}
-
 /// The list `bodies`, and of a single one its keys.
 pub(crate) fn list_of_bodies<B: Serialize, S: Serializer>(list: &[B], serializer: S) -> Result<S::Ok, S::Error> {
     #[derive(Serialize)]

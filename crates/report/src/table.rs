@@ -205,7 +205,8 @@ impl Form {
                 let is_zero = text.bytes().all(|digit| b"-0.".contains(&digit));
                 if is_zero { text.replace('-', "") } else { text }
             }
-            (Self::Power(decimals), Value::Number(value)) => format!("{value:.decimals$e}"),
+            // Zero has no sign.
+            (Self::Power(decimals), Value::Number(value)) => format!("{:.decimals$e}", value + 0.0),
             (Self::Plain, Value::Number(value)) => quantity(*value),
             (_, Value::Json(Json::Null)) => "-".to_owned(),
             _ => plain(value),
@@ -214,7 +215,7 @@ impl Form {
 }
 
 fn begins_as_number(text: &str) -> bool {
-    text.starts_with(|letter: char| letter.is_ascii_digit() || letter == '-')
+    text.starts_with(|letter: char| letter.is_ascii_digit() || matches!(letter, '-' | '+'))
 }
 
 /// A value as a field of CSV.

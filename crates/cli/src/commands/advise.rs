@@ -3,8 +3,6 @@
 use clap::Args;
 use diagnostic::Failure;
 use flexframe::advise;
-use flexframe::report::OfBodies;
-use flexframe::system_modes::{self, AdviceOnSystems};
 
 use crate::arguments::SceneArgs;
 use crate::output;
@@ -27,17 +25,8 @@ impl Advise {
     pub fn execute(self, mut session: Session) -> Result<(), Failure> {
         let Self { scene: SceneArgs { scene, json }, verify } = self;
         let scene = session.read_scene(scene)?;
-        let mut reports = Vec::new();
-        for body in &scene.bodies {
-            let report = advise::advise(body, &session.builder, verify, |p| session.bar.advise(p))?;
-            reports.push((body.name.clone(), report));
-        }
-        if scene.has_connections() {
-            let systems = system_modes::system_advice(&scene, &session.builder, |p| session.bar.build(p))?;
-            drop(session.bar);
-            return output::print(&AdviceOnSystems { bodies: reports, systems }, json);
-        }
+        let report = advise::advise(&scene, &session.builder, verify, |p| session.bar.advise(p))?;
         drop(session.bar);
-        output::print(&OfBodies(reports), json)
+        output::print(&report, json)
     }
 }

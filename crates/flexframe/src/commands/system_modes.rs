@@ -16,7 +16,6 @@ use nalgebra::Vector3;
 use scene::Scene;
 
 use crate::commands::modes::Carried;
-pub use advice::{AdviceOnSystems, SystemAdvice};
 use assembled::tied_motions_at;
 pub(crate) use assembled::{TiedMotion, tied_motions};
 pub use draw::{draw, write_fields};
@@ -25,7 +24,6 @@ pub use report::{Share, SystemModeReport, SystemModes, SystemModesReport};
 pub(crate) use rotors::Rotors;
 pub use rotors::SpinningRotor;
 pub(crate) use shape::SystemSurface;
-pub use stiffening::{StiffenedBody, StiffenedFrequency};
 
 /// Finds the vibrations of all bodies of a scene that joints, springs or bushings tie together, at rest where they stand at the
 /// start, or where a run has them at a time; the bodies are deformed as their loads ask, and drives hold still, but rotors spin. Where forces do
@@ -71,22 +69,18 @@ fn motions_at(scene: &Scene, models: &[Model], time: Option<f64>) -> Result<Vec<
 ///
 /// # Errors
 /// [`Failure`].
-pub fn system_advice(
+pub(crate) fn system_advice(
     scene: &Scene,
     builder: &Builder,
     progress: impl FnMut(BuildProgress),
-) -> Result<Vec<SystemAdvice>, Failure> {
+) -> Result<Vec<Report>, Failure> {
     let models = builder.models(scene, progress)?;
     let of_system = |motion: &TiedMotion| {
         let (modes, _) = of_motion(scene, motion)?;
         let flexible = motion.bodies.iter().copied().filter(|body| models[*body].body.flexible() > 0);
         let flexible = body_names(scene, &flexible.collect::<Vec<_>>());
-        let advice = SystemAdvice::new(&modes.report, &flexible);
-        Ok(advice.with_stiffening(
-            stiffening::stiffened(scene, &models, motion),
-            &scene.units,
-            &modes.report.frequency_unit,
-        ))
+        let stiffening = stiffening::stiffened(scene, &models, motion);
+        Ok(advice::advice(&modes.report, &flexible, stiffening, &scene.units))
     };
     tied_motions(scene, &models)?.iter().map(of_system).collect()
 }

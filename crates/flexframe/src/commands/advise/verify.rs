@@ -1,14 +1,13 @@
 //! Real influence of an effect: the scene run with it switched.
 
 use advice::Subject;
+use diagnostic::{Diagnostic, Failure};
 use dynamics::{Effect, EffectMap, Observation, Rows, StepControl};
 use model::{ModeCount, Model, Needs, Variants};
 use nalgebra::{Matrix3, Vector3};
 use scene::Body;
-use serde::Serialize;
 
-use crate::commands::run::{RunError, RunFailure};
-use crate::files::json;
+use crate::commands::run::RunFailure;
 use crate::rows::effects::is_on;
 
 /// Times at which motions are compared.
@@ -22,11 +21,9 @@ const ROUNDING: f64 = 1e-14;
 const FLEXIBILITY: Subject = Subject::Effect(Effect::Flexibility);
 
 /// Result of switching an effect.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Real {
+pub(super) enum Real {
     /// Relative difference of the motions.
-    Difference(#[serde(serialize_with = "json::number")] f64),
+    Difference(f64),
     /// One of the runs fails, with the reason.
     Fails(String),
 }
@@ -46,11 +43,11 @@ impl<'a, 'b> Base<'a, 'b> {
         needs: &'a Needs,
         model: &'a Model,
         builder: &'a mut Variants<'b>,
-    ) -> Result<Self, RunError> {
+    ) -> Result<Self, Failure> {
         // Settled as the others are, so that nothing but the switch is between them.
         let settled = settled(needs, body, model, None);
-        let motion = follow(body, needs, &builder.build(body, &settled, |_| ())?)
-            .map_err(|source| RunError::Verify { scene: body.path.clone(), source: Box::new(source) })?;
+        let motion = follow(body, needs, &builder.build(body, &settled, |_| ())?);
+        let motion = motion.map_err(|source| source.in_file(&body.path))?;
         Ok(Self { scene: body, needs, model, builder, motion })
     }
 

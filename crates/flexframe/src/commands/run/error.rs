@@ -34,9 +34,6 @@ pub enum RunError {
     /// The results file cannot be written.
     #[error("{0}")]
     File(#[from] FileError),
-    /// The scene cannot be run to compare other runs with.
-    #[error("{}: the scene itself does not run, so that there is nothing to verify against: {source}", scene.display())]
-    Verify { scene: PathBuf, source: Box<RunFailure> },
     /// The run was asked to stop. `part`: the unfinished file, with the states up to there; `replaces`: another results file is
     /// there that it may replace.
     #[error("stopped at time {time}; go on with: flexframe resume {}{}", part.display(), if *replaces { " --overwrite" } else { "" })]
@@ -140,7 +137,6 @@ impl Diagnostic for RunError {
             Self::Scene(error) => error.diagnosis(),
             Self::Output(error) => error.diagnosis(),
             Self::Setup { scene, source } => source.diagnosis().in_file(scene),
-            Self::Verify { scene, source } => source.diagnosis().in_file(scene),
             Self::Folder { folder, .. } => Kind::Io.of(folder),
             Self::Step { results, .. } => Kind::Run.of(results),
             Self::Refused { results, .. } => Kind::Refused.of(results),
