@@ -176,7 +176,10 @@ impl Report {
             let files: Vec<Json> = self.files.iter().map(|file| file.display().to_string().into()).collect();
             put(&mut object, "files", files.into());
         }
-        put(&mut object, "warnings", self.warnings.clone().into());
+        // A list of rows may have warnings by their numbers.
+        if !object.contains_key("warnings") {
+            put(&mut object, "warnings", self.warnings.clone().into());
+        }
         Json::Object(object)
     }
 

@@ -190,7 +190,8 @@ impl Table {
             lines.remove(usize::from(!self.title.is_empty()));
         }
         if rows.len() < self.rows() {
-            lines.push(format!("  {} of {} rows; --json has them all", rows.len(), self.rows()));
+            let rest = if self.path.is_some() { "; --json has them all" } else { "" };
+            lines.push(format!("  {} of {} rows{rest}", rows.len(), self.rows()));
         }
         lines
     }

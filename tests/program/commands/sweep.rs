@@ -156,7 +156,8 @@ fn warnings_of_rows_are_kept_and_failures_name_no_file_that_is_gone() {
     let failure = &report.failures[&2];
     assert!(failure.contains("at time 0.0") && !failure.contains(".h5"), "{failure}");
     assert_eq!(report.warnings.keys().collect::<Vec<_>>(), [&1], "{:?}", report.warnings);
-    assert!(report.to_string().contains(&format!("warning  row 1: {}", report.warnings[&1][0])), "{report}");
+    let text = report.report().to_string();
+    assert!(text.contains(&format!("warning  row 1: {}", report.warnings[&1][0])), "{text}");
     // They are in the table.
     assert_eq!(case.run(false).unwrap().warnings, report.warnings);
 }
@@ -241,7 +242,7 @@ fn a_table_is_written_as_csv_and_shown() {
         "{csv}"
     );
     assert_eq!(lines.len(), 4);
-    let text = report.to_string();
+    let text = report.report().to_string();
     let shown: Vec<Vec<&str>> = text.lines().map(|line| line.split_whitespace().collect()).collect();
     assert!(
         shown.iter().any(

@@ -63,7 +63,7 @@ impl Sweep {
             }
         };
         drop(session.bar);
-        output::print(&report, json)?;
+        output::print(&report.report(), json)?;
         report.require_a_row()
     }
 }

@@ -10,7 +10,6 @@ mod text;
 
 use std::collections::BTreeMap;
 use std::error::Error;
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError, mpsc};
@@ -19,20 +18,19 @@ use std::time::{Duration, Instant};
 use diagnostic::{Failure, Kind};
 use keys::Hash;
 use model::{Assembly, AssemblyInput, BuildError, BuildProgress, Builder, Model, Needs, Variants};
+use report::{Report, Value};
 use results::{ColumnTable, Results};
 use scene::{Body, Scene};
-use serde::Serialize;
 use whole_file::{FileLock, TemporaryFolder, cure_of_temporaries};
 
 use crate::commands::run::{self, RunSettings};
-use crate::files::json;
 use crate::files::outputs::{Outputs, Written};
 use crate::files::write_error::WriteError;
 use crate::rows::columns::COLUMNS;
 use crate::{modes, plausible};
 use plan::{Asked, Plan};
 use table::{Done, RowState, Table};
-use text::{Shown, write_csv};
+use text::{shown, write_csv};
 
 pub use shard::{Shard, slurm_script};
 
@@ -71,13 +69,12 @@ pub struct SweepSettings {
     pub shard: Option<Shard>,
 }
 
-/// Report of `flexframe sweep`.
-#[derive(Debug, Clone, Serialize)]
+/// The end of a sweep.
+#[derive(Debug, Clone)]
 pub struct SweepReport {
     /// Title of the scene.
     pub title: String,
     /// The table.
-    #[serde(serialize_with = "json::path")]
     pub output: PathBuf,
     /// Rows of the table; with a shard, those that are the shard's.
     pub rows: usize,
@@ -96,11 +93,9 @@ pub struct SweepReport {
     /// How often matrices were assembled and factored.
     pub reductions: usize,
     /// The same numbers as CSV; none of a shard.
-    #[serde(serialize_with = "json::optional_path")]
     pub csv: Option<PathBuf>,
-    /// Some rows for people.
-    #[serde(skip)]
-    shown: Shown,
+    /// The rows that were run.
+    shown: report::Table,
 }
 
 impl SweepReport {
@@ -118,12 +113,51 @@ impl SweepReport {
         }
     }
 
+    /// The same as a report.
+    pub fn report(&self) -> Report {
+        let mut report = Report::new(&self.title);
+        let failures =
+            self.failures.iter().map(|(row, words)| (*row, words.lines().next().unwrap_or_default().to_owned()));
+        let warnings = self.warnings.iter().map(|(row, words)| (*row, words.join("; ")));
+        let (done, kept, failed) = (self.done, self.kept, self.failures.len());
+        let csv = self.csv.as_ref().map(|csv| csv.display().to_string());
+        report.put("output", self.output.display().to_string());
+        report.put("rows", self.rows);
+        report.put("done", done);
+        report.put("unfinished", Value::of(&self.unfinished));
+        report.put("kept", kept);
+        report.put("stale", self.stale);
+        report.put("failures", Value::of(&self.failures));
+        report.put("warnings", Value::of(&self.warnings));
+        report.put("reductions", self.reductions);
+        report.put("csv", csv.as_deref());
+        report.line("rows", format!("{done} done ({kept} of them before), {failed} failed"));
+        if self.stale > 0 {
+            report
+                .line("stale", format!("{} rows were computed before from files that have changed since", self.stale));
+        }
+        add_rows(&mut report, "failed", "failures", failures);
+        add_rows(&mut report, "warning", "warnings", warnings);
+        for shard in &self.unfinished {
+            let again = format!("run it again (--shard {shard}), then merge again");
+            report.line("open", format!("shard {shard} has rows that were not run: {again}"));
+        }
+        if self.reductions > 0 {
+            report.line("body", format!("matrices assembled and factored {} time(s)", self.reductions));
+        }
+        if done > 0 {
+            report.table(self.shown.clone());
+        }
+        report.line("wrote", format!("{} {}", self.output.display(), csv.unwrap_or_default()).trim_end());
+        report
+    }
+
     /// The report of a table of the whole sweep, of which `kept` rows were done before.
     fn of(plan: Plan, output: &Path, csv: Option<PathBuf>, table: &Table, kept: usize) -> Self {
         let [done, _] = table.counts();
         Self {
             csv,
-            shown: Shown::new(&plan, table),
+            shown: shown(&plan, table),
             title: plan.title,
             output: output.to_owned(),
             rows: table.rows.len(),
@@ -135,6 +169,15 @@ impl SweepReport {
             warnings: table.warnings(),
             reductions: 0,
         }
+    }
+}
+
+/// Adds some rows with words to a report.
+fn add_rows(report: &mut Report, label: &str, dataset: &str, rows: impl ExactSizeIterator<Item = (usize, String)>) {
+    let left = rows.len().saturating_sub(SHOWN);
+    rows.take(SHOWN).for_each(|(row, words)| report.line(label, format!("row {row}: {words}")));
+    if left > 0 {
+        report.line("", format!("and {left} more, see `{dataset}` in the file"));
     }
 }
 
@@ -431,40 +474,4 @@ fn column_of(
         )
     })?;
     numbers(table).ok_or_else(|| format!("the column {column} has no rows"))
-}
-
-impl fmt::Display for SweepReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}", self.title)?;
-        writeln!(f, "  rows     {} done ({} of them before), {} failed", self.done, self.kept, self.failures.len())?;
-        if self.stale > 0 {
-            writeln!(f, "  stale    {} rows were computed before from files that have changed since", self.stale)?;
-        }
-        for (row, words) in self.failures.iter().take(SHOWN) {
-            writeln!(f, "  failed   row {row}: {}", words.lines().next().unwrap_or_default())?;
-        }
-        if self.failures.len() > SHOWN {
-            writeln!(f, "           and {} more, see `failures` in the file", self.failures.len() - SHOWN)?;
-        }
-        for (row, words) in self.warnings.iter().take(SHOWN) {
-            writeln!(f, "  warning  row {row}: {}", words.join("; "))?;
-        }
-        if self.warnings.len() > SHOWN {
-            writeln!(f, "           and {} more, see `warnings` in the file", self.warnings.len() - SHOWN)?;
-        }
-        for shard in &self.unfinished {
-            writeln!(
-                f,
-                "  open     shard {shard} has rows that were not run: run it again (--shard {shard}), then merge again"
-            )?;
-        }
-        if self.reductions > 0 {
-            writeln!(f, "  body     matrices assembled and factored {} time(s)", self.reductions)?;
-        }
-        if self.done > 0 {
-            write!(f, "\n{}\n", self.shown)?;
-        }
-        write!(f, "  wrote    {}", self.output.display())?;
-        self.csv.iter().try_for_each(|csv| write!(f, " {}", csv.display()))
-    }
 }

@@ -1,16 +1,14 @@
 //! The table of a sweep as text: all of it as CSV, and a part for people.
 
-use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
 
-use report::quoted;
+use report::{Form, quantity, quoted};
 use toml::Value;
 use whole_file::WholeFile;
 
 use super::plan::{Asked, Plan};
 use super::table::{RowState, Table};
-use crate::report::quantity;
 use crate::rows::columns::column_of;
 
 /// More rows than this are thinned: the file has them all.
@@ -53,63 +51,39 @@ pub(super) fn write_csv(path: &Path, plan: &Plan, table: &Table) -> io::Result<(
     file.finish()
 }
 
-/// Some rows for people.
-#[derive(Debug, Clone)]
-pub(super) struct Shown {
-    heads: Vec<String>,
-    /// The number of each row, and its fields.
-    rows: Vec<(usize, Vec<String>)>,
-    /// Rows and columns that there are.
-    of: [usize; 2],
-}
-
-impl Shown {
-    /// Rows that were run, at equal distances, with the last one.
-    pub fn new(plan: &Plan, table: &Table) -> Self {
-        let widths = widths_of(plan, table);
-        let mut heads = heads_of(plan, &widths);
-        let run: Vec<usize> = (0..table.rows.len()).filter(|row| table.rows[*row] != RowState::Open).collect();
-        let of = [run.len(), heads.len()];
-        heads.truncate(COLUMNS);
-        let stride = run.len().saturating_sub(1).div_ceil(ROWS - 1).max(1);
-        let is_shown = |i: &usize| i.is_multiple_of(stride) || i + 1 == run.len();
-        let fields = |row: usize| {
-            let parameters = plan.parameters.iter().map(|(_, values)| match &values[row] {
-                Value::Float(number) => quantity(*number),
-                other => other.to_string(),
-            });
-            let result = |number: Option<f64>| match (&table.rows[row], number) {
-                (RowState::Failed(_), _) => "failed".to_owned(),
-                (_, Some(number)) if !number.is_nan() => quantity(number),
-                _ => "-".to_owned(),
-            };
-            let results = numbers(&table.rows[row], &widths).map(result);
-            (row, parameters.chain(results).take(COLUMNS).collect())
-        };
-        Self { heads, rows: (0..run.len()).filter(is_shown).map(|i| fields(run[i])).collect(), of }
-    }
-}
-
-impl fmt::Display for Shown {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let width = |column: usize| {
-            let fields = self.rows.iter().map(|(_, fields)| fields[column].chars().count());
-            fields.chain([self.heads[column].chars().count()]).max().unwrap_or_default()
-        };
-        let widths: Vec<usize> = (0..self.heads.len()).map(width).collect();
-        let line = |f: &mut fmt::Formatter<'_>, row: &dyn fmt::Display, fields: &[String]| {
-            write!(f, "  {row:>7}")?;
-            fields.iter().zip(&widths).try_for_each(|(field, width)| write!(f, "  {field:>width$}"))?;
-            writeln!(f)
-        };
-        line(f, &"row", &self.heads)?;
-        self.rows.iter().try_for_each(|(row, fields)| line(f, row, fields))?;
-        let [rows, columns] = self.of;
-        if self.rows.len() < rows || self.heads.len() < columns {
-            writeln!(f, "  {} of {rows} rows, {} of {columns} columns", self.rows.len(), self.heads.len())?;
-        }
-        Ok(())
-    }
+/// Rows that were run, for people.
+pub(super) fn shown(plan: &Plan, table: &Table) -> report::Table {
+    let widths = widths_of(plan, table);
+    let run: Vec<usize> = (0..table.rows.len()).filter(|row| table.rows[*row] != RowState::Open).collect();
+    let field = |number: Option<f64>, row: &RowState| match (number, row) {
+        (_, RowState::Failed(_)) => "failed".into(),
+        (Some(number), _) if !number.is_nan() => number.into(),
+        _ => report::Value::NONE,
+    };
+    let parameter = |value: &Value| match value {
+        Value::Float(number) => quantity(*number),
+        other => other.to_string(),
+    };
+    let mut columns: Vec<Vec<report::Value>> = plan
+        .parameters
+        .iter()
+        .map(|(_, values)| run.iter().map(|row| parameter(&values[*row]).into()).collect())
+        .collect();
+    let results: Vec<Vec<_>> = run.iter().map(|row| numbers(&table.rows[*row], &widths).collect()).collect();
+    let count = results.first().map_or(0, Vec::len);
+    columns.extend(
+        (0..count).map(|k| run.iter().zip(&results).map(|(row, of_row)| field(of_row[k], &table.rows[*row])).collect()),
+    );
+    let heads = heads_of(plan, &widths);
+    let left =
+        if heads.len() > COLUMNS { format!("the first {COLUMNS} of {} columns", heads.len()) } else { String::new() };
+    let shown =
+        report::Table::default().titled(left).most(ROWS).spread().text_only("row", Form::Plain, run.iter().copied());
+    heads
+        .into_iter()
+        .zip(columns)
+        .take(COLUMNS)
+        .fold(shown, |shown, (head, column)| shown.text_only(head, Form::Plain, column))
 }
 
 /// How many numbers each result has; 0 where no row is done.
