@@ -311,7 +311,7 @@ impl JointLaw for Motor {
 fn run(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Run, Failure> {
     let models: Vec<&Model> = fmu.bodies.iter().map(|body| &body.model).collect();
     let rows = Rows::EverySteps(u64::MAX);
-    let mut beginning = StartSettings { rows, ..StartSettings::of(&fmu.system, &models) };
+    let mut beginning = StartSettings { rows, ..StartSettings::of(&fmu.scene, &models) };
     beginning.end = stop.unwrap_or(0.0).max(beginning.end);
     for (number, (body, forces)) in fmu.bodies.iter().zip(&mut beginning.bodies).enumerate() {
         connect(body, forces, inputs.iter().filter(|channel| channel.input.body == number));
@@ -321,7 +321,7 @@ fn run(fmu: &FmuModel, inputs: &[Channel], stop: Option<f64>) -> Result<Run, Fai
             beginning.laws.push(JointForces { joint, along, law: Arc::new(Motor(signal.clone())) });
         }
     }
-    begin(&fmu.system, &models, &beginning).map_err(|error| refused(format!("the motion cannot start: {error}")))
+    begin(&fmu.scene, &models, &beginning).map_err(|error| refused(format!("the motion cannot start: {error}")))
 }
 
 /// Lets inputs act on a body.

@@ -51,7 +51,7 @@ impl Body {
 
     /// The same body in another scene.
     pub(crate) fn of_scene(&self, py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
-        let of = scene.get().scene(py)?.clone();
+        let of = scene.get().only_body(py)?.clone();
         let needs = Needs::default();
         if Assembly::input(&of, &needs) != Assembly::input(self.scene_of(), &needs) {
             let expected = "one with the same [body], constraints and modes.flexible";
@@ -89,7 +89,7 @@ impl Body {
 impl Body {
     #[new]
     fn new(py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
-        let of = scene.get().scene(py)?.clone();
+        let of = scene.get().only_body(py)?.clone();
         warn(py, doubts_of_body(&of))?;
         let (of_thread, builder) = (of.clone(), scene.get().builder().clone());
         let build = move |told: &mut dyn FnMut(BuildProgress)| {

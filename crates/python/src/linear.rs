@@ -31,8 +31,8 @@ pub(crate) fn linearized<'py>(
         wrong_input(py, "reduce", &found, expected, "give the way and the number of states")
     })?;
     let settings = LinearSettings { spin, time, without_rigid, inputs, outputs };
-    let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-    let work = move |told: &mut dyn FnMut(BuildProgress)| linear_space(&system, &builder, &settings, reduction, told);
+    let (whole, builder) = (scene.get().whole().clone(), scene.get().builder().clone());
+    let work = move |told: &mut dyn FnMut(BuildProgress)| linear_space(&whole, &builder, &settings, reduction, told);
     let space = built(py, &scene, work)?;
     let StateSpace { a, b, c, d, states, inputs, outputs } = space.model();
     let found = PyDict::new(py);

@@ -28,8 +28,8 @@ pub(crate) fn gradients(
 ) -> PyResult<String> {
     let frequencies = frequencies.map(|(start, end, count)| Frequencies { start, end, count });
     let settings = GradientSettings { parameters, frequencies };
-    let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-    let work = move |told: &mut dyn FnMut(BuildProgress)| gradient::gradient(&system, &builder, &settings, told);
+    let (whole, builder) = (scene.get().whole().clone(), scene.get().builder().clone());
+    let work = move |told: &mut dyn FnMut(BuildProgress)| gradient::gradient(&whole, &builder, &settings, told);
     json(&built(py, &scene, work)?)
 }
 
@@ -50,8 +50,8 @@ pub(crate) fn fitted(
         (None, None) => None,
     };
     let settings = FitSettings { parameters, measured, deviation };
-    let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-    let work = move |told: &mut dyn FnMut(BuildProgress)| fit::fit(&system, &builder, &settings, None, told);
+    let (whole, builder) = (scene.get().whole().clone(), scene.get().builder().clone());
+    let work = move |told: &mut dyn FnMut(BuildProgress)| fit::fit(&whole, &builder, &settings, None, told);
     json(&built(py, &scene, work)?)
 }
 

@@ -159,8 +159,8 @@ pub(crate) fn frf_report(
     let (start, end, count) = frequencies;
     let frequencies = Frequencies { start, end, count };
     let settings = FrfSettings { linear: about.into(), frequencies, logarithmic, loss_factor: structural };
-    let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-    let work = move |told: &mut dyn FnMut(BuildProgress)| frf::frf(&system, &builder, &settings, told);
+    let (whole, builder) = (scene.get().whole().clone(), scene.get().builder().clone());
+    let work = move |told: &mut dyn FnMut(BuildProgress)| frf::frf(&whole, &builder, &settings, told);
     Ok(CommandReport { report: built(py, &scene, work)?, files: &frf::FILES })
 }
 
@@ -175,8 +175,8 @@ pub(crate) fn psd_report(
     structural: Option<f64>,
 ) -> PyResult<CommandReport> {
     let settings = PsdSettings { linear: about.into(), band, loss_factor: structural };
-    let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-    let work = move |told: &mut dyn FnMut(BuildProgress)| psd::psd(&system, &builder, &spectra, &settings, told);
+    let (whole, builder) = (scene.get().whole().clone(), scene.get().builder().clone());
+    let work = move |told: &mut dyn FnMut(BuildProgress)| psd::psd(&whole, &builder, &spectra, &settings, told);
     Ok(CommandReport { report: built(py, &scene, work)?, files: &psd::FILES })
 }
 
@@ -191,9 +191,9 @@ pub(crate) fn shock_report(
 ) -> PyResult<CommandReport> {
     let settings = LinearSettings::from(about);
     let interpolation = interpolation_of(py, interpolation)?;
-    let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
+    let (whole, builder) = (scene.get().whole().clone(), scene.get().builder().clone());
     let work = move |told: &mut dyn FnMut(BuildProgress)| {
-        shock::shock(&system, &builder, (&table, interpolation), &settings, told)
+        shock::shock(&whole, &builder, (&table, interpolation), &settings, told)
     };
     Ok(CommandReport { report: built(py, &scene, work)?, files: &[] })
 }
@@ -232,10 +232,10 @@ pub(crate) fn campbell_report(
         "never" => AboutRest::Never,
         other => return Err(wrong_input(py, "about_rest", other, "auto, always or never", "give one of them")),
     };
-    let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
+    let (whole, builder) = (scene.get().whole().clone(), scene.get().builder().clone());
     let settings = CampbellSettings { axis, joint, speeds, orders, about_rest };
     let work = move |told: &mut dyn FnMut(BuildProgress)| {
-        campbell::campbell(&system, &builder, &settings, |progress| {
+        campbell::campbell(&whole, &builder, &settings, |progress| {
             if let CampbellProgress::Build(progress) = progress {
                 told(progress);
             }

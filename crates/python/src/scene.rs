@@ -31,8 +31,8 @@ const NAME: &str = "scene";
 #[pyclass(frozen, module = "flexframe")]
 pub(crate) struct Scene {
     /// One for each body.
-    system: Arc<flexframe::scene::Scene>,
-    scenes: Vec<Arc<flexframe::scene::Body>>,
+    whole: Arc<flexframe::scene::Scene>,
+    bodies: Vec<Arc<flexframe::scene::Body>>,
     /// The body that was named.
     body: Option<String>,
     builder: Builder,
@@ -43,9 +43,9 @@ const UNPICKLE: &str = "_scene";
 
 impl Scene {
     /// The scene of its only body.
-    pub(crate) fn scene(&self, py: Python<'_>) -> PyResult<&Arc<flexframe::scene::Body>> {
-        match &self.scenes[..] {
-            [scene] => Ok(scene),
+    pub(crate) fn only_body(&self, py: Python<'_>) -> PyResult<&Arc<flexframe::scene::Body>> {
+        match &self.bodies[..] {
+            [body] => Ok(body),
             several => {
                 let found = format!("{} bodies", several.len());
                 let help = "name one: Scene(…, body=\"NAME\"); run takes all";
@@ -55,8 +55,8 @@ impl Scene {
     }
 
     /// Its bodies with what ties them together.
-    pub(crate) fn system(&self) -> &Arc<flexframe::scene::Scene> {
-        &self.system
+    pub(crate) fn whole(&self) -> &Arc<flexframe::scene::Scene> {
+        &self.whole
     }
 
     /// The builder of its bodies.
@@ -66,13 +66,13 @@ impl Scene {
 
     fn parsed(py: Python<'_>, text: &str, path: PathBuf, body: Option<String>, builder: Builder) -> PyResult<Self> {
         // Tables of histories are read, too.
-        let system = detached(py, || match &body {
+        let whole = detached(py, || match &body {
             Some(body) => Ok(flexframe::scene::Body::parse_body(text, path, Some(body))?.into()),
             None => flexframe::scene::Scene::parse(text, path),
         })?;
-        let system = Arc::new(system.map_err(|error: SceneError| exception(py, &error))?);
-        let scenes = system.bodies.iter().cloned().map(Arc::new).collect();
-        Ok(Self { system, scenes, body, builder })
+        let whole = Arc::new(whole.map_err(|error: SceneError| exception(py, &error))?);
+        let bodies = whole.bodies.iter().cloned().map(Arc::new).collect();
+        Ok(Self { whole, bodies, body, builder })
     }
 }
 
@@ -132,47 +132,47 @@ impl Scene {
     /// The title of the run.
     #[getter]
     fn title(&self) -> &str {
-        &self.system.title
+        &self.whole.title
     }
 
     /// The text of the scene, TOML; with all bodies, where it has several.
     #[getter]
     fn text(&self) -> &str {
-        &self.system.text
+        &self.whole.text
     }
 
     /// Names of its bodies; "body" is that of a single one.
     #[getter]
     fn bodies(&self) -> Vec<&str> {
-        self.scenes.iter().map(|body| body.name.as_deref().unwrap_or("body")).collect()
+        self.bodies.iter().map(|body| body.name.as_deref().unwrap_or("body")).collect()
     }
 
     /// The scene file, or `base` and `name` of a dict.
     #[getter]
     fn path(&self) -> &PathBuf {
-        &self.system.path
+        &self.whole.path
     }
 
     /// Time at the end of the run.
     #[getter]
     fn end(&self) -> f64 {
-        self.system.time.end
+        self.whole.time.end
     }
 
     /// Labels of "length", "mass" and "time".
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        units(py, &self.system.units.length, &self.system.units.mass, &self.system.units.time)
+        units(py, &self.whole.units.length, &self.whole.units.mass, &self.whole.units.time)
     }
 
     fn __repr__(&self) -> String {
-        format!("Scene({:?}, {:?})", self.path().display().to_string(), self.system.title)
+        format!("Scene({:?}, {:?})", self.path().display().to_string(), self.whole.title)
     }
 
     /// The title and the text.
     fn _repr_html_(&self) -> String {
         let file = self.path().display().to_string();
-        heading(&self.system.title, &file) + &format!("<pre>{}</pre>", escaped(self.text()))
+        heading(&self.whole.title, &file) + &format!("<pre>{}</pre>", escaped(self.text()))
     }
 }
 

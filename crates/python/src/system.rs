@@ -22,8 +22,8 @@ pub(crate) struct System {
 
 impl System {
     /// Its bodies with what ties them together.
-    pub(crate) fn system(&self) -> &Arc<flexframe::scene::Scene> {
-        self.scene.get().system()
+    pub(crate) fn whole(&self) -> &Arc<flexframe::scene::Scene> {
+        self.scene.get().whole()
     }
 
     pub(crate) fn models(&self) -> &[Arc<Model>] {
@@ -35,10 +35,10 @@ impl System {
 impl System {
     #[new]
     fn new(py: Python<'_>, scene: Py<Scene>) -> PyResult<Self> {
-        let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
-        warn(py, doubts_of_scene(&system))?;
+        let (whole, builder) = (scene.get().whole().clone(), scene.get().builder().clone());
+        warn(py, doubts_of_scene(&whole))?;
         let build = move |told: &mut dyn FnMut(BuildProgress)| {
-            system.bodies.iter().map(|of| builder.build(of, &mut *told).map(Arc::new)).collect()
+            whole.bodies.iter().map(|of| builder.build(of, &mut *told).map(Arc::new)).collect()
         };
         let models = built(py, &scene, build)?;
         Ok(Self { scene, models })
@@ -58,13 +58,13 @@ impl System {
     #[getter]
     fn bodies(&self) -> Vec<String> {
         let name = |body: &flexframe::scene::Body| body.name.clone().unwrap_or_else(|| "body".to_owned());
-        self.system().bodies.iter().map(name).collect()
+        self.whole().bodies.iter().map(name).collect()
     }
 
     /// Names of its joints.
     #[getter]
     fn joints(&self) -> Vec<String> {
-        self.system().joints.iter().map(|joint| joint.name.clone()).collect()
+        self.whole().joints.iter().map(|joint| joint.name.clone()).collect()
     }
 
     fn __repr__(&self) -> String {

@@ -15,10 +15,10 @@ const HELP: &str = "make the file again: flexframe reduce SCENE -o FILE, from a 
 /// The body file of a scene, and the body that it was made of. What the scene says besides must be the same.
 pub(crate) fn read_body_file(
     builder: &Builder,
-    scene: &Body,
+    body: &Body,
     given: &FileBody,
 ) -> Result<(SealedFile, MeshedBody), BuildError> {
-    let refuse = |found: String, expected: &str| -> SceneError { scene.refuse(KEY, found, expected, HELP) };
+    let refuse = |found: String, expected: &str| -> SceneError { body.refuse(KEY, found, expected, HELP) };
     let opened = SealedFile::open(&given.file, Format::BODY).and_then(|file| Ok((Origin::read(&file)?, file)));
     let (origin, file) =
         opened.map_err(|error| refuse(error.to_string(), "a body file that flexframe reduce has made"))?;
@@ -30,7 +30,7 @@ pub(crate) fn read_body_file(
     if let Some(mesh) = mesh {
         let settings = import_settings(builder, *mesh_size, *raise_order);
         // The file does without the mesh.
-        if let Some(hash) = mesh_file_at(scene, mesh, &settings)?.ok().and_then(|file| file.hash())
+        if let Some(hash) = mesh_file_at(body, mesh, &settings)?.ok().and_then(|file| file.hash())
             && hash.to_string() != origin.mesh_hash
         {
             let found = "a body file that was made of another mesh".to_owned();

@@ -44,7 +44,7 @@ impl Numbers {
 
 /// Datasets that are read by name.
 struct Named<'a> {
-    scene: &'a Body,
+    given: &'a Body,
     datasets: Vec<(Declared, Numbers)>,
 }
 
@@ -126,7 +126,7 @@ impl Builder {
         let Some(store) = &assembled.store else { return Err(without_store(cache, given)) };
 
         let arrays = MeshArrays::new(&meshed.mesh, &meshed.mesh_notes, &[], &Beside::default());
-        let mut named = Named { scene: given, datasets: Vec::new() };
+        let mut named = Named { given, datasets: Vec::new() };
         named.add_groups(&meshed.mesh);
         named.add_modes(&model, meshed);
         named.add_constants(&model);
@@ -297,7 +297,7 @@ impl Named<'_> {
         self.add_shapes("modes", what, modes, damping, 0..natural);
         let all = modes.eigenvalues.len();
         self.add_shapes("static_shapes", "static shape (no natural frequency)", modes, damping, natural..all);
-        let unit = format!("{}^-0.5", self.scene.units.mass);
+        let unit = format!("{}^-0.5", self.given.units.mass);
         let rigid = modes.rigid.shapes.as_ref();
         let description = "displacement of each node in each of the rigid modes (zero where the body has less)";
         self.add(
@@ -311,7 +311,7 @@ impl Named<'_> {
     }
 
     fn add_shapes(&mut self, group: &str, what: &str, modes: &Modes, damping: &[f64], which: std::ops::Range<usize>) {
-        let (mass, time) = (self.scene.units.mass.clone(), self.scene.units.time.clone());
+        let (mass, time) = (self.given.units.mass.clone(), self.given.units.time.clone());
         let shapes = modes.shapes.subcols(which.start, which.len());
         let nodes = shapes.nrows() / 3;
         let circular: Vec<f64> = modes.eigenvalues[which.clone()].iter().map(|lambda| lambda.sqrt()).collect();
@@ -337,7 +337,7 @@ impl Named<'_> {
         let nf = body.flexible();
         let all = 6 + nf;
         let (length, mass, time) = {
-            let units = &self.scene.units;
+            let units = &self.given.units;
             (units.length.clone(), units.mass.clone(), units.time.clone())
         };
         let (root, first) = (format!("{mass}^0.5"), format!("{mass}^0.5 {length}"));
@@ -402,7 +402,7 @@ impl Named<'_> {
 
     /// Adds the terms by which the coordinates of all shapes follow from those of the modes: see [`Manifold`].
     fn add_large_deflection(&mut self, manifold: &Manifold, following: MatRef<'_, f64>) {
-        let (mass, length) = (self.scene.units.mass.clone(), self.scene.units.length.clone());
+        let (mass, length) = (self.given.units.mass.clone(), self.given.units.length.clone());
         let products = manifold.products();
         let factor = |product: &Vec<usize>, i: usize| product.get(i).copied().unwrap_or(manifold.modes()) as u32;
         let list = products.iter().flat_map(|product| [0, 1, 2].map(|i| factor(product, i))).collect();
@@ -433,7 +433,7 @@ impl Named<'_> {
     fn add_stress(&mut self, stress: &BodyStress, model: &Model) {
         let Some((nodes, of_coordinates)) = stress.field() else { return };
         let (length, mass, time) = {
-            let units = &self.scene.units;
+            let units = &self.given.units;
             (units.length.clone(), units.mass.clone(), units.time.clone())
         };
         let sites = nodes.len();
@@ -457,7 +457,7 @@ impl Named<'_> {
 
     /// By compressed columns; more entries than 32 bits can number take 50 GB.
     fn add_matrix(&mut self, name: &str, matrix: SparseColMatRef<'_, usize, f64>) {
-        let (mass, time) = (&self.scene.units.mass, &self.scene.units.time);
+        let (mass, time) = (&self.given.units.mass, &self.given.units.time);
         let unit = if name == "mass" { mass.clone() } else { format!("{mass}/{time}^2") };
         let words = |values: &[usize]| Numbers::U32(values.iter().map(|value| *value as u32).collect());
         let (starts, rows) = (matrix.symbolic().col_ptr(), matrix.symbolic().row_idx());

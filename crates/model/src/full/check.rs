@@ -94,7 +94,7 @@ pub struct FrequencyCheck {
 /// A full body that checks states of a model: with its factor at rest.
 pub struct Checker<'a> {
     full: &'a FullModel,
-    scene: &'a Body,
+    given: &'a Body,
     model: &'a Model,
     body: &'a FullBody<'a>,
     at_rest: Tangent<'a>,
@@ -126,7 +126,7 @@ impl<'a> Checker<'a> {
             let located = full.assembled.mesh.locate(at);
             located.map_err(|error| refuse(given, &key, error).into())
         })?;
-        Ok(Self { full, scene: given, model, body, at_rest: body.at_rest()?, points, course: Course::default() })
+        Ok(Self { full, given, model, body, at_rest: body.at_rest()?, points, course: Course::default() })
     }
 
     /// States errors against the displacements of a run, too.
@@ -201,7 +201,7 @@ impl<'a> Checker<'a> {
     /// makes it lead or lag by ½ (e/q) ω t. A mode that the run holds at a place counts as far as it vibrates about it.
     fn drift(&self, along: &[f64], at: &[f64]) -> f64 {
         let Model { body, damping_ratios, .. } = self.model;
-        let end = self.scene.time.end;
+        let end = self.given.time.end;
         let of_mode = |k: usize| -> Option<f64> {
             let (error, q, swing) = (along.get(k)?.abs(), at.get(k)?.abs(), *self.course.swings.get(k)?);
             let (omega, zeta) = (*body.circular_frequencies.get(k)?, damping_ratios.get(k).copied().unwrap_or(0.0));
@@ -262,7 +262,7 @@ impl<'a> Checker<'a> {
             loads.extend([force, moment]);
         }
         let undamped = vec![0.0; self.model.damping_ratios.len()];
-        let initial = self.model.initial(self.scene);
+        let initial = self.model.initial(self.given);
         Ok(ConservativeBody::new(body, &undamped, loads, physics)?.beginning_at(&initial))
     }
 

@@ -77,10 +77,10 @@ impl Tied {
     ///
     /// # Errors
     /// [`BuildError`] for a marker whose nodes do not tell all turns.
-    pub fn markers(&self, system: &Scene, models: &[&Model], between: [End; 2]) -> Result<[Marker; 2], BuildError> {
-        let island = Island { scene: system, models, bodies: self.bodies.clone(), states: self.states.clone() };
+    pub fn markers(&self, scene: &Scene, models: &[&Model], between: [End; 2]) -> Result<[Marker; 2], BuildError> {
+        let island = Island { scene, models, bodies: self.bodies.clone(), states: self.states.clone() };
         if let Some(i) = island.unknown_turns(between) {
-            let key = format!("{}.markers", system.name_of(between[i]).split('.').next().unwrap_or_default());
+            let key = format!("{}.markers", scene.name_of(between[i]).split('.').next().unwrap_or_default());
             return Err(island.refuse(&key, "nodes that do not tell all turns", "a force between markers"));
         }
         Ok(island.markers(between, None))

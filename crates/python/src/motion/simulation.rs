@@ -260,7 +260,7 @@ fn bodies_of(of: &Bound<'_, PyAny>) -> PyResult<(Arc<flexframe::scene::Scene>, V
         return Ok((Arc::new(given.into()), vec![body.get().model().clone()]));
     }
     if let Ok(system) = of.cast::<System>() {
-        return Ok((system.get().system().clone(), system.get().models().to_vec()));
+        return Ok((system.get().whole().clone(), system.get().models().to_vec()));
     }
     let found = of.get_type().name()?;
     Err(PyTypeError::new_err(format!("a simulation is of a Body or of a System; found {found}")))

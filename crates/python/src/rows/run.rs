@@ -30,9 +30,9 @@ pub(crate) fn run(
     large: bool,
     check: bool,
 ) -> PyResult<Bound<'_, PyAny>> {
-    let (system, builder) = (scene.get().system().clone(), scene.get().builder().clone());
+    let (whole, builder) = (scene.get().whole().clone(), scene.get().builder().clone());
     followed(py, [overwrite, large, check], builder, move |settings, progress| {
-        flexframe::accuracy::run(&system, &folder, settings, progress).map(|(_, report)| report)
+        flexframe::accuracy::run(&whole, &folder, settings, progress).map(|(_, report)| report)
     })
 }
 

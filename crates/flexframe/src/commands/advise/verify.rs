@@ -30,7 +30,7 @@ pub(super) enum Real {
 
 /// The scene as it is.
 pub(super) struct Base<'a, 'b> {
-    scene: &'a Body,
+    body: &'a Body,
     model: &'a Model,
     needs: &'a Needs,
     builder: &'a mut Variants<'b>,
@@ -48,18 +48,18 @@ impl<'a, 'b> Base<'a, 'b> {
         let settled = settled(needs, body, model, None);
         let motion = follow(body, needs, &builder.build(body, &settled, |_| ())?);
         let motion = motion.map_err(|source| source.in_file(&body.path))?;
-        Ok(Self { scene: body, needs, model, builder, motion })
+        Ok(Self { body, needs, model, builder, motion })
     }
 
     /// The difference that switching an effect or the static shapes makes.
     pub(super) fn influence(&mut self, subject: Subject) -> Real {
-        let Some(on) = is_on(self.scene, self.model, subject) else { return Real::Difference(0.0) };
-        let switched = settled(self.needs, self.scene, self.model, Some((subject, !on)));
-        let model = match self.builder.build(self.scene, &switched, |_| ()) {
+        let Some(on) = is_on(self.body, self.model, subject) else { return Real::Difference(0.0) };
+        let switched = settled(self.needs, self.body, self.model, Some((subject, !on)));
+        let model = match self.builder.build(self.body, &switched, |_| ()) {
             Ok(model) => model,
             Err(error) => return Real::Fails(error.to_string()),
         };
-        match follow(self.scene, self.needs, &model) {
+        match follow(self.body, self.needs, &model) {
             Ok(motion) => Real::Difference(self.difference(&motion, subject)),
             Err(failure) => Real::Fails(failure.to_string()),
         }

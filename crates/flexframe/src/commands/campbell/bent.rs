@@ -59,7 +59,7 @@ pub(super) fn deflection(model: &Model, axis: &Vector3<f64>, speed: f64) -> Opti
 
 /// The full body in a spin about an axis.
 pub(super) struct BentSpin<'a> {
-    scene: &'a Body,
+    given: &'a Body,
     body: FullBody<'a>,
     axis: Vector3<f64>,
     /// Modes and static shapes of the undeformed body (3n×k), and M times them: shapes are compared in these coordinates.
@@ -87,7 +87,7 @@ impl Family for BentSpin<'_> {
         }
         let failed = |source: NonlinearError| {
             let help = "end the speeds before this one, or take vibrations about the undeformed body with `--about-rest never`";
-            let known = source.diagnosis().in_file(&self.scene.path).help(help);
+            let known = source.diagnosis().in_file(&self.given.path).help(help);
             known.says(format!("at {speed} rad per time: {source}"))
         };
         let (omega, settings) = (self.axis * speed, EquilibriumSettings::default());
@@ -111,7 +111,7 @@ impl<'a> BentSpin<'a> {
         let Some(meshed) = &model.meshed else { return Err(no_full_body(given)) };
         let body = full.body().map_err(|source| source.in_file(&given.path))?;
         Ok(Self {
-            scene: given,
+            given,
             axis: *axis,
             shapes: &meshed.modes.shapes,
             momenta: body.momenta_of(meshed.modes.shapes.as_ref()),
@@ -165,7 +165,7 @@ impl<'a> BentSpin<'a> {
 
     /// True if a low frequency at a speed is off about the undeformed body, or the body has no rest there.
     pub fn differs(&self, spin: &SteadySpin, speed: f64) -> Result<bool, Failure> {
-        let linear = spin.modes(speed).map_err(|source| source.in_file(&self.scene.path))?;
+        let linear = spin.modes(speed).map_err(|source| source.in_file(&self.given.path))?;
         let Ok(bent) = self.vibrations(speed) else { return Ok(true) };
         let size = |mode: &SpinMode| mode.circular_frequency.powi(2) - mode.growth.powi(2);
         let mut pairs = linear.iter().zip(&bent).take(COMPARED);

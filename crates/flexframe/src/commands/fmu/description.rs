@@ -23,7 +23,7 @@ pub(super) fn describe(fmu: &FmuModel, manifest: &Manifest, identifier: &str) ->
         ("fmiVersion", "2.0"),
         ("modelName", identifier),
         ("guid", &manifest.guid),
-        ("description", &fmu.system.title),
+        ("description", &fmu.scene.title),
         ("generationTool", concat!("flexframe ", env!("CARGO_PKG_VERSION"))),
         ("variableNamingConvention", "structured"),
         ("numberOfEventIndicators", "0"),
@@ -59,7 +59,7 @@ pub(super) fn describe(fmu: &FmuModel, manifest: &Manifest, identifier: &str) ->
         out.create_element("DefaultExperiment")
             .with_attributes([
                 ("startTime", "0"),
-                ("stopTime", &(fmu.system.time.end * fmu.seconds).to_string()),
+                ("stopTime", &(fmu.scene.time.end * fmu.seconds).to_string()),
                 ("stepSize", &(step * fmu.seconds).to_string()),
             ])
             .write_empty()?;
@@ -75,24 +75,24 @@ pub(super) fn describe(fmu: &FmuModel, manifest: &Manifest, identifier: &str) ->
 
 /// The time between two rows of the scene.
 fn communication_step(fmu: &FmuModel) -> f64 {
-    match (fmu.system.rows, fmu.system.time.control) {
+    match (fmu.scene.rows, fmu.scene.time.control) {
         (Rows::Interval(interval), _) => interval,
         (Rows::EverySteps(steps), StepControl::Fixed(step)) => steps as f64 * step,
-        (Rows::EverySteps(_), StepControl::Tolerance(_)) => fmu.system.time.end / DEFAULT_POINTS,
+        (Rows::EverySteps(_), StepControl::Tolerance(_)) => fmu.scene.time.end / DEFAULT_POINTS,
     }
 }
 
 /// The name of a variable's unit; none of a pure number.
 fn unit_name(fmu: &FmuModel, variable: &Variable) -> Option<String> {
-    if variable.source == Source::Time && Powers::of("time").and_then(|time| time.factor(&fmu.system.units)).is_some() {
+    if variable.source == Source::Time && Powers::of("time").and_then(|time| time.factor(&fmu.scene.units)).is_some() {
         // FMI counts time in seconds.
         return Some("s".to_owned());
     }
     match Powers::of(variable.unit) {
         Some(powers) if powers == Powers::default() => None,
-        Some(powers) => Some(powers.name(&fmu.system.units)),
+        Some(powers) => Some(powers.name(&fmu.scene.units)),
         None => {
-            let scene::Units { length, mass, time } = &fmu.system.units;
+            let scene::Units { length, mass, time } = &fmu.scene.units;
             let named = variable.unit.replace("length", length).replace("mass", mass).replace("time", time);
             Some(named)
         }
@@ -103,7 +103,7 @@ fn units(out: &mut Writer<Vec<u8>>, fmu: &FmuModel) -> io::Result<()> {
     let mut all = BTreeMap::new();
     for variable in &fmu.variables {
         if let Some(name) = unit_name(fmu, variable) {
-            let known = Powers::of(variable.unit).and_then(|powers| Some((powers, powers.factor(&fmu.system.units)?)));
+            let known = Powers::of(variable.unit).and_then(|powers| Some((powers, powers.factor(&fmu.scene.units)?)));
             let known = match variable.source {
                 Source::Time => known.map(|(powers, _)| (powers, 1.0)),
                 _ => known,

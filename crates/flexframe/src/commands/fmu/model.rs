@@ -26,7 +26,7 @@ pub struct FmuModel {
     /// Seconds in the scene's unit of time: FMI counts time in seconds.
     pub seconds: f64,
     /// Its bodies and what ties them together, in the words of the scene.
-    pub system: Scene,
+    pub scene: Scene,
     metadata: Metadata,
 }
 
@@ -57,7 +57,7 @@ impl FmuModel {
         let mut metadata = run::metadata_of_scene(&scene, &of_run);
         add_motors(&scene, &mut metadata);
         let variables = variables(&scene, &of_run, &metadata);
-        Ok(Self { variables, seconds: seconds(&scene.units), metadata, bodies, system: scene })
+        Ok(Self { variables, seconds: seconds(&scene.units), metadata, bodies, scene })
     }
 
     /// The model in the resources of an FMU, which have been [checked](Manifest::checked).

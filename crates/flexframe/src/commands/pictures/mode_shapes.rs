@@ -20,12 +20,12 @@ const MAX_PANELS: usize = 20;
 ///
 /// # Errors
 /// [`Failure`], also where there are no flexible modes to draw.
-pub fn draw(scene: &Body, model: &Model, stem: &Path) -> Result<[PathBuf; 3], Failure> {
-    require_surface(scene)?;
-    let meshed = require_flexible(scene, model)?;
+pub fn draw(given: &Body, model: &Model, stem: &Path) -> Result<[PathBuf; 3], Failure> {
+    require_surface(given)?;
+    let meshed = require_flexible(given, model)?;
     let Meshed { mesh, modes, .. } = meshed;
     let surface = Surface::of_model(model);
-    let unit = frequency_unit(&scene.units.time);
+    let unit = frequency_unit(&given.units.time);
     let panels = modes
         .natural_frequencies()
         .iter()
@@ -51,7 +51,7 @@ pub fn draw(scene: &Body, model: &Model, stem: &Path) -> Result<[PathBuf; 3], Fa
         })
         .collect();
     let pictures = ShapeGrid {
-        title: format!("{}: mode shapes", scene.title),
+        title: format!("{}: mode shapes", given.title),
         value_label: "displacement / largest of the mode".to_owned(),
         triangles: &surface.triangles,
         edges: &surface.edges,

@@ -25,12 +25,12 @@ const MAX_PANELS: usize = 20;
 /// # Errors
 /// [`Failure`].
 pub fn draw(
-    system: &Scene,
+    scene: &Scene,
     models: &[Model],
     modes: &SystemModes,
     stem: &Path,
 ) -> Result<Option<[PathBuf; 3]>, Failure> {
-    let surface = SystemSurface::new(system, models, modes, false)?;
+    let surface = SystemSurface::new(scene, models, modes, false)?;
     if surface.points.is_empty() || modes.vibrations.modes.is_empty() {
         return Ok(None);
     }

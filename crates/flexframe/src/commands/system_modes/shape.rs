@@ -43,7 +43,7 @@ impl<'a> SystemSurface<'a> {
     /// # Errors
     /// [`BuildError`] of a body whose surface is not known, and where the stress cannot be computed.
     pub(crate) fn new(
-        system: &Scene,
+        scene: &Scene,
         models: &[Model],
         modes: &'a SystemModes,
         stress: bool,
@@ -51,11 +51,11 @@ impl<'a> SystemSurface<'a> {
         let mut first = 0;
         let mut made = Self { parts: Vec::new(), triangles: Vec::new(), edges: Vec::new(), points: Vec::new() };
         for (number, state) in modes.bodies.iter().zip(&modes.states) {
-            let (scene, model) = (&system.bodies[*number], &models[*number]);
+            let (given, model) = (&scene.bodies[*number], &models[*number]);
             let range = first..first + 6 + state.modal_displacement.len();
             first = range.end;
             if model.meshed.is_some() {
-                require_surface(scene)?;
+                require_surface(given)?;
             }
             let surface = if stress { Surface::with_stress(model)? } else { Surface::of_model(model) };
             let origin = Vector3::from(model.body.origin);

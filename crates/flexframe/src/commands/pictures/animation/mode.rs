@@ -26,7 +26,7 @@ const DRAWN: f64 = 0.08;
 /// # Errors
 /// [`Failure`].
 pub fn animate_mode(
-    system: &Scene,
+    scene: &Scene,
     builder: &Builder,
     number: usize,
     path: &Path,
@@ -35,27 +35,27 @@ pub fn animate_mode(
 ) -> Result<(), Failure> {
     let format = Format::of(path)?;
     let no_such = |modes: usize| {
-        let wrong = Kind::Usage.of(&system.path).key("--mode").found(number.to_string());
+        let wrong = Kind::Usage.of(&scene.path).key("--mode").found(number.to_string());
         let help = "`flexframe modes` lists them; ask for more in [modes] of the scene";
         Failure::from(wrong.expected(format!("1 to {modes}")).help(help))
     };
     let several = |count: usize| {
         let found = format!("{count} bodies or systems that move apart, each with modes of its own");
-        let wrong = Kind::Usage.of(&system.path).key("--mode").found(found);
+        let wrong = Kind::Usage.of(&scene.path).key("--mode").found(found);
         Err(wrong.expected("one").help("choose a body with --body NAME").into())
     };
     let index = number.wrapping_sub(1);
-    if system.has_connections() {
-        let models = builder.models(system, |p| progress(RunProgress::Build(p)))?;
-        let found = system_modes::vibrations(system, &models)?;
+    if scene.has_connections() {
+        let models = builder.models(scene, |p| progress(RunProgress::Build(p)))?;
+        let found = system_modes::vibrations(scene, &models)?;
         let [modes] = &found[..] else {
             return several(found.len());
         };
         let count = modes.vibrations.modes.len();
         let mode = modes.vibrations.modes.get(index).ok_or_else(|| no_such(count))?;
-        let surface = SystemSurface::new(system, &models, modes, settings.coloured == Coloured::Stress)?;
+        let surface = SystemSurface::new(scene, &models, modes, settings.coloured == Coloured::Stress)?;
         let swinging = Swinging {
-            title: title(system, number, modes.report.modes[index].frequency),
+            title: title(scene, number, modes.report.modes[index].frequency),
             triangles: &surface.triangles,
             edges: &surface.edges,
             points: &surface.points,
@@ -68,12 +68,12 @@ pub fn animate_mode(
             progress,
         );
     }
-    let [scene] = &system.bodies[..] else {
-        return several(system.bodies.len());
+    let [given] = &scene.bodies[..] else {
+        return several(scene.bodies.len());
     };
-    require_surface(scene)?;
-    let model = builder.needing(Needs::modes()).build(scene, |p| progress(RunProgress::Build(p)))?;
-    let meshed = require_flexible(scene, &model)?;
+    require_surface(given)?;
+    let model = builder.needing(Needs::modes()).build(given, |p| progress(RunProgress::Build(p)))?;
+    let meshed = require_flexible(given, &model)?;
     let frequencies = meshed.modes.natural_frequencies();
     let frequency = *frequencies.get(index).ok_or_else(|| no_such(frequencies.len()))?;
     let surface = match settings.coloured {
@@ -81,7 +81,7 @@ pub fn animate_mode(
         Coloured::Displacement => Surface::of_model(&model),
     };
     let swinging = Swinging {
-        title: title(system, number, frequency),
+        title: title(scene, number, frequency),
         triangles: &surface.triangles,
         edges: &surface.edges,
         points: &surface.shapes.positions,
