@@ -102,7 +102,8 @@ pub use tolerance::{ErrorKinds, ErrorMeasure, StatedError};
 pub use vibration::loaded::{AtRest, LoadedError, LoadedMode};
 pub use vibration::steady_spin::SteadySpin;
 pub use vibration::system::{
-    BodyStiffening, CommonSpin, Linearization, ReactionRows, Rotor, RotorError, ScaledEquations, SpinMode, Spring,
+    BodyStiffening, CommonSpin, Equilibrium, Linearization, ReactionRows, Rotor, RotorError, ScaledEquations, SpinMode,
+    Spring,
     SteadyError, SteadyState, StiffenedMode, SystemMode, SystemParticipation, TurningJoint, Unbalance, Vibrations,
 };
 

@@ -12,6 +12,7 @@
 mod blocks;
 pub(crate) mod body;
 pub(crate) mod configuration;
+mod equilibrium;
 pub(crate) mod error;
 mod graded;
 pub(crate) mod linearization;
@@ -31,6 +32,7 @@ pub(crate) mod terms;
 pub(crate) mod tie;
 
 pub use configuration::CommonSpin;
+pub use equilibrium::Equilibrium;
 pub use error::SteadyError;
 pub use linearization::Linearization;
 pub use mode::{SystemMode, Vibrations};

@@ -6,6 +6,7 @@ mod dense;
 mod described;
 mod elements;
 mod equation;
+mod equilibrium;
 mod far;
 mod flexible;
 mod hard;

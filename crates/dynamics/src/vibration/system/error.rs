@@ -24,6 +24,17 @@ pub enum SteadyError {
         /// Rate of its row.
         rate: f64,
     },
+    /// No place in which all forces balance.
+    #[error(
+        "the bodies find no equilibrium after {passes} passes: body {body} is still moving; hold it by a joint or a spring, or take out the \
+         load that moves it"
+    )]
+    NoEquilibrium {
+        /// The body that moves most, or its number.
+        body: String,
+        /// Passes that were made.
+        passes: usize,
+    },
     /// Newton's method does not converge.
     #[error(
         "the bodies find no shape in which they are at rest in this state after {passes} passes; forces or spin may bend them further than their modes hold: try less, and see what the bodies do by `flexframe check`"

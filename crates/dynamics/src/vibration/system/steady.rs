@@ -24,7 +24,7 @@ const STILL: f64 = 1e-12;
 /// Largest turn and bending, as a part of the size of bodies, of one pass.
 const STRIDE: f64 = 0.2;
 /// Part of forces that is their rounding where they balance.
-const ROUNDING: f64 = 1e-13;
+pub(super) const ROUNDING: f64 = 1e-13;
 /// Rate of a row in a common spin, relative to the speed of the bodies, above which its joint does not allow the spin.
 const AGAINST: f64 = 1e-6;
 
@@ -85,6 +85,12 @@ impl SystemMotion {
 }
 
 impl SteadyState {
+    /// At rest, without forces that are left.
+    pub(super) fn at_rest(system: &System, configuration: Configuration, terms: Terms, linear: Linearization) -> Self {
+        let unbalance = Unbalance::new(system, &vec![0.0; system.coordinates()]);
+        Self { configuration, terms, linear, unbalance, spin: Some(CommonSpin::REST) }
+    }
+
     /// The common spin; `None` where bodies move against each other.
     pub fn spin(&self) -> Option<&CommonSpin> {
         self.spin.as_ref()
@@ -111,9 +117,7 @@ impl SteadyState {
         spin: Option<&CommonSpin>,
     ) -> Result<Self, SteadyError> {
         let system = motion.system();
-        let sizes = system.bodies.iter().map(crate::ConservativeBody::radius_of_gyration);
-        // Of a point mass the size of the largest body.
-        let sizes: Vec<f64> = sizes.map(|radius| if radius > 0.0 { radius } else { motion.size() }).collect();
+        let sizes = sizes_of_bodies(motion);
         for pass in 0.. {
             let terms = Terms::new(system, &at)?;
             if spin.is_some() {
@@ -156,15 +160,21 @@ impl SteadyState {
     }
 }
 
+/// The radius of gyration of each body; of a point mass the size of the largest body.
+pub(super) fn sizes_of_bodies(motion: &SystemMotion) -> Vec<f64> {
+    let radii = motion.system().bodies.iter().map(crate::ConservativeBody::radius_of_gyration);
+    radii.map(|radius| if radius > 0.0 { radius } else { motion.size() }).collect()
+}
+
 /// (K + Λ) x over all coordinates.
-fn product(terms: &Terms, linear: &Linearization, x: &[f64]) -> Vec<f64> {
+pub(super) fn product(terms: &Terms, linear: &Linearization, x: &[f64]) -> Vec<f64> {
     let mut forces = terms.stiffness_times(x);
     forces.iter_mut().zip(&linear.strain).zip(x).for_each(|((sum, strain), x)| *sum += strain * x);
     forces
 }
 
 /// The largest turn, displacement or bending of a body, relative to its size.
-fn size_of(motion: &SystemMotion, change: &[f64], sizes: &[f64]) -> f64 {
+pub(super) fn size_of(motion: &SystemMotion, change: &[f64], sizes: &[f64]) -> f64 {
     let system = motion.system();
     let mut largest = 0.0_f64;
     for (b, size) in sizes.iter().enumerate() {

@@ -1,0 +1,221 @@
+//! Static equilibria of a system: its bodies stand and are deformed so that no force is left, Eq. (L16) of `docs/method/systems.md`.
+//!
+//! Newton's method over all motions that the joints leave. The stiffness of each direction counts by its magnitude, so that the bodies go
+//! down where the energy falls:
+//!
+//! ```text
+//! K v_k = κ_k v_k,    δη = Σ v_k (v_k · Nᵀf) / |κ_k|
+//! ```
+
+use std::f64::consts::PI;
+
+use faer::Mat;
+
+use crate::system::joint::coordinate::Coordinate;
+use crate::system::radau::SystemMotion;
+use crate::vibration::system::configuration::{CommonSpin, Configuration};
+use crate::vibration::system::error::SteadyError;
+use crate::vibration::system::graded::graded_modes;
+use crate::vibration::system::linearization::Linearization;
+use crate::vibration::system::steady::{ROUNDING, SteadyState, product, size_of, sizes_of_bodies};
+use crate::vibration::system::terms::{Terms, springs};
+
+/// Most passes of Newton's method.
+const PASSES: usize = 200;
+/// The largest turn, displacement or bending, as a part of the size of bodies, of one pass.
+const STRIDE: f64 = 0.2;
+/// The longest way in a direction, relative to the system: more where nothing resists means nothing.
+const REACH: f64 = 1e3;
+/// The change at which it has converged, and a change that may be rounding: if it falls no more, it has converged, too.
+const STILL: f64 = 1e-12;
+const NEARLY_STILL: f64 = 1e-8;
+/// Directions from an equilibrium in which others are looked for, softest first, and the strides of the way.
+const DIRECTIONS: usize = 4;
+const WAY: usize = 8;
+/// Places that differ by less are one.
+const SAME: f64 = 1e-6;
+
+/// A system at rest, where no force is left.
+#[derive(Debug, Clone)]
+pub struct Equilibrium {
+    /// Turns of the joints that are more than half a turn, by their names.
+    wound: Option<(String, f64)>,
+    /// The bodies, with the linearised equations.
+    pub steady: SteadyState,
+    /// Independent motions in which the energy is highest here: the system leaves it along them.
+    pub unstable: usize,
+    /// Independent motions that nothing resists.
+    pub indifferent: usize,
+    /// Directions over all bodies, softest first.
+    directions: Vec<Vec<f64>>,
+}
+
+/// Where Newton's method goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Way {
+    /// Down the energy.
+    Down,
+    /// To the nearest equilibrium, which may be unstable.
+    Nearest,
+}
+
+/// The stiffness of independent motions by its directions.
+struct Directions {
+    /// κ and v.
+    modes: Vec<(f64, Vec<f64>)>,
+    /// κ that is rounding.
+    rounding: f64,
+}
+
+impl SystemMotion {
+    /// The equilibrium that is down the energy from where the bodies are, of forces and drives at this time. Velocities do not count, and
+    /// friction does not hold.
+    ///
+    /// # Errors
+    /// [`SteadyError::NoEquilibrium`] where nothing holds a body against a force; [`SteadyError`].
+    pub fn equilibrium(&self) -> Result<Equilibrium, SteadyError> {
+        find(self, Configuration::of(self, &CommonSpin::REST), Way::Down)
+    }
+
+    /// Other equilibria, stable or not, which the softest motions from one lead to, in both senses. There may be more.
+    ///
+    /// # Errors
+    /// [`SteadyError`] of the equations where a way begins. A way that leads to no equilibrium is left out.
+    pub fn other_equilibria(&self, from: &Equilibrium) -> Result<Vec<Equilibrium>, SteadyError> {
+        let mut found: Vec<Equilibrium> = Vec::new();
+        let sizes = sizes_of_bodies(self);
+        for direction in &from.directions {
+            for sense in [1.0, -1.0] {
+                let mut at = from.steady.configuration.clone();
+                let part = sense * STRIDE / size_of(self, direction, &sizes);
+                let step: Vec<f64> = direction.iter().map(|x| part * x).collect();
+                for stride in 1..=WAY {
+                    go(self, &mut at, &step);
+                    let terms = Terms::new(self.system(), &at)?;
+                    go(self, &mut at, &terms.closing(self.system(), &terms.residuals));
+                    let down = (stride == WAY).then_some(Way::Down);
+                    for way in [Way::Nearest].into_iter().chain(down) {
+                        let Ok(other) = find(self, at.clone(), way) else { continue };
+                        let is_known = |known: &Equilibrium| size_of(self, &known.way_to(&other), &sizes) < SAME;
+                        if !std::iter::once(from).chain(&found).any(is_known) {
+                            found.push(other);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(found)
+    }
+}
+
+impl Equilibrium {
+    /// A joint that is turned by more than half a turn, and its angle: a run that begins here counts from less.
+    pub fn wound(&self) -> Option<(&str, f64)> {
+        self.wound.as_ref().map(|(joint, turn)| (joint.as_str(), *turn))
+    }
+
+    /// Changes of place from here to another one, over all bodies, of whose turns only the angle counts.
+    fn way_to(&self, other: &Self) -> Vec<f64> {
+        let bodies = self.steady.configuration.bodies.iter().zip(&other.steady.configuration.bodies);
+        let way = bodies.flat_map(|(from, to)| {
+            let moved = from.body_from_global * (to.origin - from.origin);
+            let turned = [from.attitude.angle_to(&to.attitude), 0.0, 0.0];
+            let bent = from.q.iter().zip(&to.q).map(|(from, to)| to - from);
+            moved.iter().copied().chain(turned).chain(bent).collect::<Vec<_>>()
+        });
+        way.collect()
+    }
+}
+
+/// Moves the bodies, and follows the turns of the joints.
+fn go(motion: &SystemMotion, at: &mut Configuration, change: &[f64]) {
+    at.change(motion.system(), change, Some(&CommonSpin::REST));
+    for (number, joint) in motion.system().joints().iter().enumerate() {
+        let places = at.places(&joint.markers);
+        at.turns[number] = Coordinate::Turn.wrench(places.each_ref(), at.turns[number]).residual;
+    }
+}
+
+fn find(motion: &SystemMotion, mut at: Configuration, way: Way) -> Result<Equilibrium, SteadyError> {
+    let (system, sizes) = (motion.system(), sizes_of_bodies(motion));
+    let mass: f64 = system.bodies.iter().map(crate::ConservativeBody::mass).sum();
+    let reach = REACH * mass.sqrt() * motion.size();
+    // A spring that is slack or a stop makes the way turn back: then the steps become shorter.
+    let (mut part, mut last, mut last_size) = (1.0_f64, Vec::<f64>::new(), f64::INFINITY);
+    for pass in 0.. {
+        let terms = Terms::new(system, &at)?;
+        let linear = Linearization::new(system, &terms, Vec::new())?;
+        let directions = Directions::of(&linear)?;
+        let mut change = terms.closing(system, &terms.residuals);
+        let forces = linear.project(&terms.forces);
+        let by_closing = linear.project(&product(&terms, &linear, &change));
+        let left: Vec<f64> = forces.iter().zip(&by_closing).map(|(force, less)| force - less).collect();
+        let sizes_of_forces = (0..linear.size()).map(|k| {
+            let parts = terms.forces.iter().enumerate().map(|(i, force)| (linear.basis[(i, k)] * force).powi(2));
+            parts.sum::<f64>().sqrt()
+        });
+        let rounding = ROUNDING * sizes_of_forces.fold(0.0, f64::max);
+        let deflection = linear.expand(&directions.steps(&left, (rounding, reach), way));
+        change.iter_mut().zip(&deflection).for_each(|(sum, more)| *sum += more);
+        let size = size_of(motion, &change, &sizes);
+        if !size.is_finite() {
+            return Err(SteadyError::Numbers);
+        }
+        if size <= STILL || (size <= NEARLY_STILL && size >= 0.5 * last_size) {
+            let slow = |(kappa, _): &&(f64, Vec<f64>)| kappa.abs() <= directions.rounding;
+            let indifferent = directions.modes.iter().filter(slow).count();
+            let unstable = directions.modes.iter().filter(|(kappa, _)| *kappa < -directions.rounding).count();
+            let softest = directions.modes.iter().take(DIRECTIONS).map(|(_, v)| linear.expand(v)).collect();
+            let linear = Linearization { springs: springs(system, &at), ..linear };
+            let steady = SteadyState::at_rest(system, at, terms, linear);
+            let wound = steady.configuration.turns.iter().zip(system.joints());
+            let wound =
+                wound.filter(|(turn, _)| turn.abs() > PI).map(|(turn, joint)| (joint.name.clone(), *turn)).next();
+            return Ok(Equilibrium { wound, steady, unstable, indifferent, directions: softest });
+        }
+        if pass == PASSES {
+            let body = furthest(motion, &change, &sizes);
+            return Err(SteadyError::NoEquilibrium { body, passes: PASSES });
+        }
+        let turns_back = last.iter().zip(&change).map(|(a, b)| a * b).sum::<f64>() < 0.0;
+        part = if turns_back && size > 0.5 * last_size { 0.5 * part } else { (2.0 * part).min(1.0) };
+        let scale = part * (STRIDE / size).min(1.0);
+        (last, last_size) = (change.clone(), size);
+        change.iter_mut().for_each(|change| *change *= scale);
+        go(motion, &mut at, &change);
+    }
+    Err(SteadyError::Numbers)
+}
+
+impl Directions {
+    fn of(linear: &Linearization) -> Result<Self, SteadyError> {
+        let k = &linear.stiffness;
+        let symmetric = Mat::from_fn(k.nrows(), k.ncols(), |i, j| 0.5 * (k[(i, j)] + k[(j, i)]));
+        Ok(Self { modes: graded_modes(&symmetric)?, rounding: linear.rounding_of_stiffness() })
+    }
+
+    /// The change of the independent coordinates, along no direction by more than a reach.
+    fn steps(&self, forces: &[f64], (rounding, reach): (f64, f64), way: Way) -> Vec<f64> {
+        let mut change = vec![0.0; forces.len()];
+        for (kappa, v) in &self.modes {
+            let along: f64 = v.iter().zip(forces).map(|(v, force)| v * force).sum();
+            if along.abs() > rounding {
+                let size = (along / kappa.abs().max(self.rounding)).clamp(-reach, reach);
+                let step = if way == Way::Nearest && *kappa < 0.0 { -size } else { size };
+                change.iter_mut().zip(v).for_each(|(sum, v)| *sum += step * v);
+            }
+        }
+        change
+    }
+}
+
+/// The body that a change moves most.
+fn furthest(motion: &SystemMotion, change: &[f64], sizes: &[f64]) -> String {
+    let system = motion.system();
+    let of_body = |b: usize| {
+        let own = |k: usize| if (system.first[b]..system.first[b + 1]).contains(&k) { change[k] } else { 0.0 };
+        size_of(motion, &(0..change.len()).map(own).collect::<Vec<_>>(), sizes)
+    };
+    let most = (0..sizes.len()).max_by(|a, b| of_body(*a).total_cmp(&of_body(*b))).unwrap_or(0);
+    system.named(most).to_string()
+}
