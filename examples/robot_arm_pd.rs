@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use flexframe::dynamics::{
     ConservativeBody, Coordinate, History, Joint, JointLawFn, Marker, MotionState, Physics, PointForce, PointShapes,
-    Reached, Rows, Simulation, StepControl, System, SystemScheme, SystemSetup,
+    Reached, Rows, Simulation, Start, StepControl, System, SystemScheme, SystemSetup,
 };
 use flexframe::nalgebra::{Matrix3, Vector3};
 use flexframe::reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -104,7 +104,7 @@ pub fn run() -> Result<Answer, Box<dyn Error>> {
     let mut simulation = Simulation::of_system(SystemSetup {
         system,
         states: vec![at(0.5), at(1.5)],
-        relaxed: false,
+        start: Start::AsPlaced,
         scheme: SystemScheme::Radau,
         control: StepControl::Tolerance(1e-8),
         end: END,

@@ -6,6 +6,7 @@ pub(crate) mod body;
 pub(crate) mod carried;
 pub(crate) mod check;
 pub(crate) mod cost;
+pub(crate) mod equilibrium;
 pub(crate) mod export;
 pub(crate) mod fmu;
 pub(crate) mod html_report;

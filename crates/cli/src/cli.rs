@@ -12,7 +12,8 @@ use toml::Value;
 
 use crate::cli_error;
 use crate::commands::{
-    advise, campbell, check, cost, fmu, linear, modes, new, paper, pictures, reduce, resume, run, sweep, verify,
+    advise, campbell, check, cost, equilibrium, fmu, linear, modes, new, paper, pictures, reduce, resume, run, sweep,
+    verify,
 };
 use crate::progress::Bar;
 use crate::session::Session;
@@ -48,6 +49,7 @@ enum Command {
     Check(check::Check),
     Reduce(reduce::Reduce),
     Fmu(fmu::Fmu),
+    Equilibrium(equilibrium::Equilibrium),
     Modes(modes::Modes),
     Advise(advise::Advise),
     Campbell(campbell::Campbell),
@@ -163,6 +165,7 @@ fn execute_command(command: Command, session: Session) -> Result<(), Failure> {
         Command::Check(command) => command.execute(session),
         Command::Reduce(command) => command.execute(session),
         Command::Fmu(command) => command.execute(session),
+        Command::Equilibrium(command) => command.execute(session),
         Command::Modes(command) => command.execute(session),
         Command::Advise(command) => command.execute(session),
         Command::Campbell(command) => command.execute(session),

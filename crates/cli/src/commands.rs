@@ -4,6 +4,7 @@ pub mod advise;
 pub mod campbell;
 pub mod check;
 pub mod cost;
+pub mod equilibrium;
 pub mod fmu;
 pub mod linear;
 pub mod modes;

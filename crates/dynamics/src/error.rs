@@ -140,6 +140,15 @@ pub enum SetupError {
     /// Bodies that find no shape for a start without ringing.
     #[error("at the relaxed start: {0}; or take `relaxed = false`")]
     NotRelaxed(#[from] SteadyError),
+    /// Bodies without an equilibrium to begin at.
+    #[error("at the start: {0}")]
+    NoEquilibrium(SteadyError),
+    /// A joint of the equilibrium that is turned by more than half a turn, from which a run counts.
+    #[error(
+        "at the equilibrium the joint \"{joint}\" is turned by {turn:.4} rad, and a run begins within half a turn: place the bodies nearer, and \
+         give its spring the rest as a preload"
+    )]
+    Wound { joint: Box<str>, turn: f64 },
     /// An error of a method or a load from outside.
     #[error(transparent)]
     Custom(#[from] CustomError),

@@ -5,6 +5,7 @@ pub mod advise;
 pub mod campbell;
 pub mod check;
 pub mod cost;
+pub mod equilibrium;
 pub mod export;
 pub mod fmu;
 pub mod hand_over;

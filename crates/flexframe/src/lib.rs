@@ -38,8 +38,8 @@ pub mod trust;
 pub use commands::linear::{fit, frequencies, frf, gradient, linearize, psd, shock, spectra, srs};
 pub use commands::pictures::{animation, html_report, mode_shapes};
 pub use commands::{
-    accuracy, advise, campbell, check, cost, export, fmu, hand_over, modes, new_scene, paper, run, sweep, system_modes,
-    verify,
+    accuracy, advise, campbell, check, cost, equilibrium, export, fmu, hand_over, modes, new_scene, paper, run, sweep,
+    system_modes, verify,
 };
 pub use files::{given_file, outputs, write_error};
 pub use rows::{columns, peak_stress, row};

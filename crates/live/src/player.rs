@@ -250,7 +250,7 @@ impl Player {
     /// Begins a motion anew with all changes, from the state that it has come to or another one.
     fn begin_anew(&mut self, motion: usize, states: Option<&[MotionState]>, time: f64) -> Result<(), LiveError> {
         let mut run = self.run.motions[motion].run.clone();
-        run.relaxed = false; // it has begun
+        run.start = dynamics::Start::AsPlaced; // it has begun
         let longer = until(run.end, time);
         prolong(&mut run, longer);
         let of_page = &self.run.motions[motion].bodies;

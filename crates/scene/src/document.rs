@@ -17,6 +17,9 @@ pub(crate) const OF_A_BODY: [&str; 6] = ["modes", "effects", "frame", "initial",
 /// Tables of a scene that tie its bodies together.
 pub(crate) const TIES: [&str; 6] = ["relaxed", "ground", "joints", "springs", "bushings", "couplings"];
 
+/// A table of a body, and with a word in its place the start of all bodies.
+const START: &str = "initial";
+
 /// Keys of `output` that belong to a body.
 pub(crate) const OUTPUT_OF_A_BODY: [&str; 3] = ["points", "stress", "peak_stress"];
 
@@ -77,6 +80,11 @@ impl<'t> Document<'t> {
             if let Some((key, value)) = table.remove_entry(key) {
                 ties.insert(key, value);
             }
+        }
+        if table.get(START).is_some_and(|start| start.get_ref().is_str())
+            && let Some((key, value)) = table.remove_entry(START)
+        {
+            ties.insert(key, value);
         }
         if ties.is_empty() {
             return None;

@@ -51,7 +51,7 @@ pub use body::modes::{About, Damping, Flexible, Large, Modes, Rayleigh};
 pub use body::{Body, BodySource, FileBody, Frame, Initial, MeshedBody, Output, RigidBody, TiedMass};
 pub use check::units::{BaseUnit, POUND_FORCE, UnitSize};
 pub use document::join as key_path;
-pub use dynamics::{Effect, EffectMap, LoadFrame, Method, Rows, StepControl};
+pub use dynamics::{Effect, EffectMap, LoadFrame, Method, Rows, Start, StepControl};
 pub use error::SceneError;
 pub use fem_tet10::{Material, Materials, PointMass};
 pub use file::{text_from, text_of};

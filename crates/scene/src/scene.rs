@@ -4,7 +4,7 @@ use std::ops::Deref;
 use std::path::Path;
 use std::sync::Arc;
 
-use dynamics::Method;
+use dynamics::{Method, Start};
 
 use crate::alone::BodyTexts;
 use crate::body::Body;
@@ -23,9 +23,10 @@ use crate::tie::marker::GroundMarker;
 const MAX_BODIES: usize = 1000;
 
 /// Keys at the root of a scene of several bodies.
-const SHARED: [&str; 12] = [
+const SHARED: [&str; 13] = [
     "title",
     "units",
+    "initial",
     "relaxed",
     BODIES,
     GROUND,
@@ -55,15 +56,15 @@ pub struct Scene {
     pub bushings: Vec<Bushing>,
     /// Joints whose coordinates go together, in the order of the file.
     pub couplings: Vec<Coupling>,
-    /// True if tied bodies begin deformed as the forces of their motion and their joints ask, so that nothing rings.
-    pub relaxed: bool,
+    /// Where tied bodies begin.
+    pub start: Start,
 }
 
 /// A body alone.
 impl From<Body> for Scene {
     fn from(body: Body) -> Self {
-        let Ties { ground, joints, springs, bushings, couplings, relaxed } = Ties::default();
-        Self { shared: body.shared.clone(), bodies: vec![body], ground, joints, springs, bushings, couplings, relaxed }
+        let Ties { ground, joints, springs, bushings, couplings, start } = Ties::default();
+        Self { shared: body.shared.clone(), bodies: vec![body], ground, joints, springs, bushings, couplings, start }
     }
 }
 
@@ -97,11 +98,11 @@ impl Scene {
         let mut document = Document::parse(text, path)?;
         let ties = document.take_ties();
         let (shared, bodies) = bodies(&document, text, ties.as_ref())?;
-        let Ties { ground, joints, springs, bushings, couplings, relaxed } = match &ties {
+        let Ties { ground, joints, springs, bushings, couplings, start } = match &ties {
             Some(ties) => Check::new(ties, shared.time.end).ties(from_document(ties)?, &bodies)?,
             None => Ties::default(),
         };
-        Ok(Self { shared, bodies, ground, joints, springs, bushings, couplings, relaxed })
+        Ok(Self { shared, bodies, ground, joints, springs, bushings, couplings, start })
     }
 
     /// The only body.

@@ -28,7 +28,10 @@ pub fn json_schema() -> Value {
     copy_properties(&root, &mut of_several, |key| OF_A_BODY.contains(&key));
     copy_properties(&output, &mut of_several, |key| OUTPUT_OF_A_BODY.contains(&key));
     of_several["description"] = json!("A body of several: the keys of `body`, and in it all that belongs to it.");
+    // A word in the place of the table of a body is of all bodies.
+    let [of_body, of_all] = [&root, &ties].map(|table| table["properties"]["initial"].clone());
     copy_properties(&ties, &mut root, |_| true);
+    root["properties"]["initial"] = json!({ "description": of_body["description"], "anyOf": [of_body, of_all] });
     root["properties"][BODIES] =
         json!({ "description": "Bodies by name.", "type": "object", "additionalProperties": of_several });
     root["required"] = json!(["title", "units", "time"]);

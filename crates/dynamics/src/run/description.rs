@@ -27,11 +27,11 @@ use crate::system::description::System;
 use crate::system::element::{ForceElement, data as elements};
 use crate::system::joint::Joint;
 use crate::system::joint::coupling::Coupling;
-use crate::system::run::setup::SystemSetup;
+use crate::system::run::setup::{Start, SystemSetup};
 
 /// Name and version of the data, in front of them.
 const NAME: &str = "flexframe run";
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// A body with what acts on it, and the points that are observed.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -66,8 +66,8 @@ pub struct RunDescription {
     pub elements: Vec<Arc<dyn ForceElement>>,
     /// The motion of each body at the beginning, as far as the joints let it be.
     pub states: Vec<MotionState>,
-    /// True if bodies in joints begin deformed as their forces ask.
-    pub relaxed: bool,
+    /// Where bodies in joints begin.
+    pub start: Start,
     /// How it is stepped.
     #[serde(with = "method")]
     pub method: Method,
@@ -175,7 +175,7 @@ impl RunDescription {
         Simulation::of_system(SystemSetup {
             system: system.with_couplings(self.couplings.clone())?.with_elements(self.elements.clone())?,
             states: self.states.clone(),
-            relaxed: self.relaxed,
+            start: self.start,
             scheme,
             control: self.control,
             end: self.end,

@@ -37,12 +37,12 @@ impl Fingerprint {
 
     /// The parts of bodies in joints. Laws, elements and equations from outside have nothing to compare.
     pub(crate) fn of_system(setup: &SystemSetup) -> Self {
-        let SystemSetup { system, states, relaxed, scheme, control, end, rows, points: _ } = setup;
+        let SystemSetup { system, states, start, scheme, control, end, rows, points: _ } = setup;
         let (mut parts, key) = (Self { counted: "bodies, loads or joints", ..Self::default() }, Key::new);
         let data = |what, bytes: Result<Vec<u8>, CheckpointError>| {
             key().of(what, 1).with("data", &to_words(&bytes.unwrap_or_default()))
         };
-        let method = key().of("method of systems", 1).with("scheme", scheme.name()).with("relaxed", relaxed);
+        let method = key().of("method of systems", 2).with("scheme", scheme.name()).with("start", start.name());
         parts.add("the scheme or its steps", method.with("control", control).with("end", end).with("rows", rows));
         parts.add("the start", data("states", encode(states)));
         for (number, body) in system.bodies().iter().enumerate() {

@@ -22,13 +22,31 @@ use crate::vibration::system::error::SteadyError;
 /// Passes: the deformation changes the forces a little.
 const PASSES: usize = 6;
 
-/// A start without ringing that was not found.
+/// The equilibrium that a run begins at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stability {
+    /// Independent motions along which the bodies leave it.
+    pub unstable: usize,
+    /// Independent motions that nothing resists.
+    pub indifferent: usize,
+}
+
+/// A start without ringing, or at rest, that was not found.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RelaxError {
     /// The bodies are not assembled, or the inertia of one is singular.
     Failed(Failed),
     /// Bodies with large modes find no shape.
     Rest(SteadyError),
+    /// The forces balance nowhere.
+    NoEquilibrium(SteadyError),
+    /// A joint of the equilibrium is turned by more than half a turn.
+    Wound {
+        /// Its name.
+        joint: Box<str>,
+        /// The angle, rad.
+        turn: f64,
+    },
 }
 
 impl From<Failed> for RelaxError {
@@ -67,6 +85,24 @@ impl SystemMotion {
             left = self.assemble()?;
         }
         Ok(left)
+    }
+
+    /// Puts the bodies where the forces on them balance, and assembles them again; they keep their velocities. Returns the largest residual
+    /// and the largest rate that are left.
+    pub(crate) fn put_at_equilibrium(&mut self) -> Result<([f64; 2], Stability), RelaxError> {
+        self.assemble()?;
+        let given: Vec<_> = (0..self.bodies.len())
+            .map(|body| self.state_in_frame(body))
+            .collect::<Result<_, _>>()
+            .map_err(Failed::Rates)?;
+        let found = self.equilibrium().map_err(RelaxError::NoEquilibrium)?;
+        if let Some((joint, turn)) = found.wound() {
+            return Err(RelaxError::Wound { joint: joint.into(), turn });
+        }
+        self.set_states_in_frame(&found.steady.states_in_frame()).map_err(|_| SteadyError::Numbers)?;
+        self.give_velocities(&given)?;
+        let stability = Stability { unstable: found.unstable, indifferent: found.indifferent };
+        Ok((self.assemble()?, stability))
     }
 
     /// Gives the origins of the bodies the velocities, and the bodies the angular velocities, of other states: a body that deforms keeps

@@ -17,6 +17,7 @@ use crate::simulation::longest_step::LongestStep;
 use crate::simulation::plan::StepControl;
 use crate::system::radau::estimate::energy_of_way;
 use crate::system::radau::{Failed, SystemMotion};
+use crate::system::relaxed::Stability;
 use crate::system::run::second_order::Branching;
 use crate::system::run::setup::{Assembled, ShapeLimit, SystemSetup, assemble, size};
 
@@ -43,6 +44,7 @@ pub struct SystemRun {
     assembled: Vec<Assembled>,
     redundant: Vec<(String, usize)>,
     branching: Option<Branching>,
+    stability: Option<Stability>,
     longest_step: f64,
     largest_residual: f64,
     undecided_at: Option<f64>,
@@ -58,10 +60,10 @@ impl SystemRun {
     pub(crate) fn begin(setup: SystemSetup) -> Result<Begun, SetupError> {
         setup.check()?;
         let (shape_limit, fingerprint) = (setup.shape_limit(), Fingerprint::of_system(&setup));
-        let SystemSetup { system, states, relaxed, scheme, control, end, rows, points } = setup;
+        let SystemSetup { system, states, start, scheme, control, end, rows, points } = setup;
         let mut motion = SystemMotion::new(system, &states)?.with_scheme(scheme);
         let size = size(&motion, &states);
-        let (assembled, branching) = assemble(&mut motion, &states, relaxed, [size, end])?;
+        let (assembled, branching, stability) = assemble(&mut motion, &states, start, [size, end])?;
         let is_implied = motion.implied_rows();
         let implied = motion.system().connections.sums(is_implied.iter().map(|is_implied| usize::from(*is_implied)));
         let redundant = implied.into_iter().filter(|(_, rows)| *rows > 0).map(|(name, rows)| (name.to_owned(), rows));
@@ -87,6 +89,7 @@ impl SystemRun {
             assembled,
             redundant,
             branching,
+            stability,
             longest_step: 0.0,
             largest_residual: 0.0,
             undecided_at: None,
@@ -118,6 +121,11 @@ impl SystemRun {
     /// what they bear is then not determined by rigid bodies, but by how the bodies give.
     pub fn redundant(&self) -> &[(String, usize)] {
         &self.redundant
+    }
+
+    /// The equilibrium that it has begun at, where it has begun at one.
+    pub fn stability(&self) -> Option<Stability> {
+        self.stability
     }
 
     /// The branches of the motion at the beginning, if there are two.

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use dynamics::{
     DescribedBody, DescriptionError, Drive, DrivenMotion, DrivenSpeed, Expression, History, Initial, LoadFn, Method,
-    Observation, Physics, ReferenceForces, Rows, RunDescription, ScaledLoad, SharedLoad, Signal, StepControl, Table,
+    Observation, Physics, ReferenceForces, Rows, RunDescription, ScaledLoad, SharedLoad, Signal, Start, StepControl,
+    Table,
 };
 use faer::Mat;
 use nalgebra::Vector3;
@@ -41,7 +42,7 @@ fn run(motion: RigidMotion, loads: Vec<SharedLoad>, physics: Physics) -> RunDesc
         couplings: Vec::new(),
         elements: Vec::new(),
         states,
-        relaxed: false,
+        start: Start::AsPlaced,
         method: Method::EXPONENTIAL,
         control: StepControl::Fixed(0.01),
         end: 1.0,

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use dynamics::{
     ConservativeBody, Coordinate, Coupling, Expression, Friction, History, Joint, JointDrive, JointForce, JointLawFn,
-    Marker, MotionState, Observation, Physics, PointSpring, Reached, Rows, Simulation, StepControl, StepError, Stops,
-    System, SystemMotion, SystemScheme, SystemSetup,
+    Marker, MotionState, Observation, Physics, PointSpring, Reached, Rows, Simulation, Start, StepControl, StepError,
+    Stops, System, SystemMotion, SystemScheme, SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{ReducedBody, RigidMotion};
@@ -217,7 +217,7 @@ fn a_fixed_step_longer_than_a_touch_says_so() {
         let mut simulation = Simulation::of_system(SystemSetup {
             system: system.clone(),
             states: vec![at(0.0, 0.0, 3.0)],
-            relaxed: false,
+            start: Start::AsPlaced,
             scheme: SystemScheme::Radau,
             control: StepControl::Fixed(step),
             end: 1.0,

@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use dynamics::{
     Applied, ConservativeBody, Coordinate, Crossing, Event, Friction, History, Joint, JointForce, Kinematics, LoadFn,
-    Marker, MotionState, Observation, Physics, PointForce, PointShapes, Reached, Rows, Signal, Simulation, Stats,
-    StepControl, StepError, System, SystemObservation, SystemScheme, SystemSetup,
+    Marker, MotionState, Observation, Physics, PointForce, PointShapes, Reached, Rows, Signal, Simulation, Start,
+    Stats, StepControl, StepError, System, SystemObservation, SystemScheme, SystemSetup,
 };
 use fem_tet10::Material;
 use nalgebra::{Matrix3, Vector3};
@@ -36,7 +36,7 @@ fn pair(scheme: SystemScheme, tolerance: f64, rows: Rows) -> Simulation {
     Simulation::of_system(SystemSetup {
         system,
         states: vec![start(-100.0, 60.0, left), start(100.0, -60.0, right)],
-        relaxed: true,
+        start: Start::Relaxed,
         scheme,
         control: StepControl::Tolerance(tolerance),
         end: END,
@@ -199,7 +199,7 @@ fn rod(omega: f64, force: JointForce, gravity: f64, rows: Rows, end: f64) -> Sim
     Simulation::of_system(SystemSetup {
         system,
         states: vec![state],
-        relaxed: false,
+        start: Start::AsPlaced,
         scheme: SystemScheme::Radau,
         control: StepControl::Tolerance(1e-9),
         end,
@@ -347,7 +347,7 @@ fn what_changes_at_a_row_within_a_step_holds_from_there() {
     let mut simulation = Simulation::of_system(SystemSetup {
         system,
         states: vec![state],
-        relaxed: false,
+        start: Start::AsPlaced,
         scheme: SystemScheme::Radau,
         control: StepControl::Tolerance(1e-9),
         end: 10.0,

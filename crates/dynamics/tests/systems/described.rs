@@ -5,7 +5,7 @@ use std::sync::Arc;
 use dynamics::{
     Bushing, Coordinate, Coupling, DescribedBody, DescriptionError, Friction, History, Joint, JointDrive, JointForce,
     JointLawFn, Marker, Method, MotionState, Physics, PointForce, PointShapes, PointSpring, Rows, RunDescription,
-    StepControl, Stops, SystemObservation, SystemScheme, Table,
+    Start, StepControl, Stops, SystemObservation, SystemScheme, Table,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -75,7 +75,7 @@ pub fn run() -> RunDescription {
                 damping: [Vector3::new(0.01, 0.0, 0.0), Vector3::zeros()],
             }),
         ],
-        relaxed: false,
+        start: Start::AsPlaced,
         method: Method::of_joints(SystemScheme::Radau),
         control: StepControl::Tolerance(1e-5),
         end: 0.2,
@@ -100,7 +100,7 @@ fn a_system_through_its_data_is_the_same() {
     let gauss = RunDescription {
         method: Method::of_joints(SystemScheme::Gauss),
         control: StepControl::Fixed(2e-3),
-        relaxed: true,
+        start: Start::Relaxed,
         ..run()
     };
     for run in [run(), gauss] {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use dynamics::{
     CommonSpin, ConservativeBody, Coupling, DescriptionError, EquationValue, History, Joint, JointEquationFn, Marker,
-    MotionState, Physics, PointForce, PointShapes, RelativePlace, Rows, SetupError, Simulation, StepControl, System,
-    SystemMotion, SystemScheme, SystemSetup,
+    MotionState, Physics, PointForce, PointShapes, RelativePlace, Rows, SetupError, Simulation, Start, StepControl,
+    System, SystemMotion, SystemScheme, SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -328,7 +328,7 @@ fn simulated(joint: Joint, start: MotionState) -> Result<Simulation, SetupError>
     Simulation::of_system(SystemSetup {
         system: System::new(vec![body(GRAVITY)], vec![joint]).unwrap(),
         states: vec![start],
-        relaxed: false,
+        start: Start::AsPlaced,
         scheme: SystemScheme::Radau,
         control: StepControl::Tolerance(1e-6),
         end: 1.0,

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use dynamics::{
     ConservativeBody, ForceElement, History, Initial, Joint, LoadFn, Marker, MarkerMotion, MarkerWrench, MotionState,
-    Observation, Physics, PointForce, PointShapes, Reached, Rows, SharedLoad, Simulation, StepControl, System,
+    Observation, Physics, PointForce, PointShapes, Reached, Rows, SharedLoad, Simulation, Start, StepControl, System,
     SystemMotion, SystemScheme, SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3, Vector6};
@@ -124,7 +124,7 @@ fn simulation(system: System, states: Vec<MotionState>, tolerance: f64, end: f64
     Simulation::of_system(SystemSetup {
         system,
         states,
-        relaxed: false,
+        start: Start::AsPlaced,
         scheme: SystemScheme::Radau,
         control: StepControl::Tolerance(tolerance),
         end,

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use dynamics::{
     ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MotionState, Physics, PointForce,
-    PointShapes, Rows, Simulation, StepControl, StepError, Stops, System, SystemMotion, SystemScheme, SystemSetup,
+    PointShapes, Rows, Simulation, Start, StepControl, StepError, Stops, System, SystemMotion, SystemScheme,
+    SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -267,7 +268,7 @@ fn an_arm_that_is_driven_beyond_its_reach_names_the_joints_that_lock() {
         let setup = SystemSetup {
             system: System::new(vec![bar(), bar(), small(), small()], joints.clone()).unwrap(),
             states: states.clone(),
-            relaxed: false,
+            start: Start::AsPlaced,
             scheme: SystemScheme::default(),
             control,
             end: 1.0,

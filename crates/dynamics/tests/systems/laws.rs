@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use dynamics::{
     Bushing, ConservativeBody, Coordinate, ForceElement, Friction, History, Joint, JointForce, JointLawFn, Marker,
     MarkerForce, MarkerLaw, MarkerMotion, MarkerWrench, MotionState, Observation, Physics, PointForce, PointShapes,
-    Reached, RelativeMotion, Rows, SharedLoad, Simulation, StepControl, Stops, System, SystemMotion, SystemScheme,
-    SystemSetup,
+    Reached, RelativeMotion, Rows, SharedLoad, Simulation, Start, StepControl, Stops, System, SystemMotion,
+    SystemScheme, SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -265,7 +265,7 @@ fn stiff_arms_come_to_rest_and_live() {
         let mut simulation = Simulation::of_system(SystemSetup {
             system: System::new(bodies, joints).unwrap(),
             states: [0.4, 1.2, 2.0].map(|x| at_rest(Vector3::x() * x)).to_vec(),
-            relaxed: false,
+            start: Start::AsPlaced,
             scheme: SystemScheme::Radau,
             control: StepControl::Tolerance(tolerance),
             end: 2.0,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use dynamics::{
     Bushing, ConservativeBody, Coupling, Expression, History, Joint, JointDrive, Marker, MotionState, Physics,
-    PointForce, PointShapes, PointSpring, Reached, Rows, SetupError, Simulation, StepControl, StepError, System,
+    PointForce, PointShapes, PointSpring, Reached, Rows, SetupError, Simulation, Start, StepControl, StepError, System,
     SystemMotion, SystemScheme, SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
@@ -66,7 +66,7 @@ pub(crate) fn run(
     Simulation::of_system(SystemSetup {
         system,
         states,
-        relaxed: false,
+        start: Start::AsPlaced,
         scheme: SystemScheme::default(),
         control: StepControl::Tolerance(tolerance),
         end,

@@ -6,8 +6,8 @@ use crate::mechanism::at_rest;
 use dynamics::{
     CheckpointError, ConservativeBody, Coordinate, History, Initial, Island, Joint, JointDrive, JointForce, Marker,
     MarkerForce, MarkerLaw, MotionState, Observation, Observer, Physics, PointForce, PointShapes, Reached,
-    RelativeMotion, RowTimes, Rows, Run, SetupError, SharedLoad, Simulation, StepControl, StepEnd, StepError, System,
-    SystemObservation, SystemScheme, SystemSetup, Table,
+    RelativeMotion, RowTimes, Rows, Run, SetupError, SharedLoad, Simulation, Start, StepControl, StepEnd, StepError,
+    System, SystemObservation, SystemScheme, SystemSetup, Table,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -33,7 +33,7 @@ fn pendulum(control: StepControl, drive: Option<JointDrive>) -> SystemSetup {
     SystemSetup {
         system,
         states: vec![at(0.5), at(1.5)],
-        relaxed: false,
+        start: Start::AsPlaced,
         scheme: SystemScheme::Radau,
         control,
         end: 2.0,

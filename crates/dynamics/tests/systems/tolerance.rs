@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use dynamics::{
     ConservativeBody, Initial, LoadFn, Marker, MotionState, Observation, Physics, PointShapes, PointSpring, Rows,
-    SharedLoad, Simulation, StatedError, StepControl, System, SystemMotion, SystemScheme, SystemSetup,
+    SharedLoad, Simulation, Start, StatedError, StepControl, System, SystemMotion, SystemScheme, SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
 use reduced_body::{BodyPoint, ReducedBody, RigidMotion};
@@ -18,7 +18,7 @@ use crate::rigid::{GRAVITY, pendulum};
 /// The last row of a run of a system, and the error that it states.
 fn end_of(
     (system, states): (System, Vec<MotionState>),
-    relaxed: bool,
+    start: Start,
     tolerance: f64,
     end: f64,
 ) -> (Vec<Observation>, StatedError, u64) {
@@ -26,7 +26,7 @@ fn end_of(
     let setup = SystemSetup {
         system,
         states,
-        relaxed,
+        start,
         scheme: SystemScheme::Radau,
         control: StepControl::Tolerance(tolerance),
         end,
@@ -62,7 +62,7 @@ fn a_tied_body_is_as_right_as_one_alone() {
         let nothing = PointSpring { markers, stiffness: 1e-9, damping: 0.0, free_length: 1.0 };
         let system = System::new(vec![body], Vec::new()).unwrap().with_elements(vec![Arc::new(nothing)]).unwrap();
         let state = MotionState { omega_body: omega, ..at_rest(Vector3::zeros()) };
-        let (rows, error, _) = end_of((system, vec![state]), false, tolerance, 60.0);
+        let (rows, error, _) = end_of((system, vec![state]), Start::AsPlaced, tolerance, 60.0);
         (rows[0].attitude, error)
     };
     let (reference, _) = alone(1e-10);
@@ -111,7 +111,7 @@ fn a_rod_at_a_joint_keeps_ringing() {
     let energy = motion.energy().unwrap();
     let end = 50.0 * 2.0 * PI / rod.body.circular_frequencies[0];
     for tolerance in [1e-2, 1e-4] {
-        let (rows, error, evaluations) = end_of((system.clone(), vec![state.clone()]), false, tolerance, end);
+        let (rows, error, evaluations) = end_of((system.clone(), vec![state.clone()]), Start::AsPlaced, tolerance, end);
         let lost = 1.0 - rows[0].energy() / energy;
         println!("{tolerance:e}: {lost:e} lost, {evaluations} evaluations, {error:?}");
         assert!(lost.abs() < 10.0 * (error.sum + error.forgotten), "{lost:e} {error:?}");
@@ -160,7 +160,7 @@ fn laws_move_a_free_ball_of_a_system() {
             let body = ConservativeBody::new(&reduced, &[], vec![load], &Physics::default()).unwrap();
             let system = System::new(vec![body], Vec::new()).unwrap();
             let state = MotionState { velocity_global: velocity, ..at_rest(Vector3::zeros()) };
-            let (rows, error, evaluations) = end_of((system, vec![state]), false, tolerance, END);
+            let (rows, error, evaluations) = end_of((system, vec![state]), Start::AsPlaced, tolerance, END);
             let off = (rows[0].origin_global - expected).norm() / expected.norm();
             println!("{name} {tolerance:e}: {off:.1e} off, stated {:.1e}, {evaluations} evaluations", error.sum);
             assert!(off < 10.0 * tolerance && evaluations < 30_000, "{name} {tolerance:e}: {off:e}, {evaluations}");

@@ -17,7 +17,7 @@ use scene::Scene;
 
 use crate::commands::modes::Carried;
 use assembled::tied_motions_at;
-pub(crate) use assembled::{TiedMotion, tied_motions};
+pub(crate) use assembled::{TiedMotion, placed_motions, tied_motions};
 pub use draw::{draw, write_fields};
 pub(crate) use report::body_names;
 pub use report::{Share, SystemModeReport, SystemModes, SystemModesReport};

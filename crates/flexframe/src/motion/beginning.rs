@@ -5,7 +5,7 @@ use std::sync::Arc;
 use diagnostic::{Diagnosis, Diagnostic};
 use dynamics::{
     Coordinate, DescribedBody, ForceElement, Island, JointEquation, JointLaw, MarkerForce, MarkerLaw, Method, Physics,
-    PointShapes, RowTimes, Rows, Run, RunDescription, Setup, SetupError, SharedLoad, Simulation, StepControl,
+    PointShapes, RowTimes, Rows, Run, RunDescription, Setup, SetupError, SharedLoad, Simulation, Start, StepControl,
 };
 use model::{BuildError, Model, StartError, Tied, physics_in_system, tie_models};
 use scene::{Body, End, Scene};
@@ -72,8 +72,8 @@ pub struct StartSettings {
     pub equations: Vec<OwnEquation>,
     /// Laws from outside between markers.
     pub marker_laws: Vec<MarkerForces>,
-    /// True if tied bodies begin deformed as their forces ask.
-    pub relaxed: bool,
+    /// Where tied bodies begin.
+    pub start: Start,
     /// True if all bodies are stepped as one system, also those that nothing ties; laws between markers want that, too.
     pub together: bool,
 }
@@ -95,7 +95,7 @@ impl StartSettings {
             laws: Vec::new(),
             equations: Vec::new(),
             marker_laws: Vec::new(),
-            relaxed: scene.relaxed,
+            start: scene.start,
             together: false,
         }
     }
@@ -272,7 +272,7 @@ pub(super) fn run_of_body(body: &Body, model: &Model, forces: &BodyForces, of: &
         couplings: Vec::new(),
         elements: Vec::new(),
         states: vec![model.initial(body).state(&model.body)],
-        relaxed: false,
+        start: Start::AsPlaced,
         method: *of.method.without_joints(),
         control: of.control,
         end: of.end,
@@ -295,7 +295,7 @@ pub(super) fn run_of_system(scene: &Scene, models: &[&Model], tied: Tied, of: &S
         couplings: tied.system.couplings().to_vec(),
         elements: tied.system.elements().to_vec(),
         states: tied.states,
-        relaxed: of.relaxed,
+        start: of.start,
         method: Method::of_joints(of.method.joints.unwrap_or_default()),
         control: of.control,
         end: of.end,

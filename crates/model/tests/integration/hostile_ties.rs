@@ -94,7 +94,7 @@ fn run(text: &str) -> Result<usize, (usize, String)> {
             points: vec![Vec::new(); tied.bodies.len()],
             system: tied.system,
             states: tied.states,
-            relaxed: scene.relaxed,
+            start: scene.start,
             scheme: dynamics::SystemScheme::Radau,
             control: time.control,
             end: time.end,

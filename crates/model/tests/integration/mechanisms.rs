@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::path::Path;
 
-use dynamics::{Reached, Rows, Simulation, SystemSetup};
+use dynamics::{Reached, Rows, Simulation, Start, SystemSetup};
 use model::{Model, tie};
 use scene::Scene;
 
@@ -21,7 +21,7 @@ fn mechanism(name: &str, rows: f64) -> Simulation {
         points: vec![Vec::new(); tied.bodies.len()],
         system: tied.system,
         states: tied.states,
-        relaxed: scene.relaxed,
+        start: scene.start,
         scheme: dynamics::SystemScheme::Radau,
         control: time.control,
         end: time.end,
@@ -29,7 +29,10 @@ fn mechanism(name: &str, rows: f64) -> Simulation {
     })
     .unwrap_or_else(|error| panic!("{error}"));
     for change in simulation.system().unwrap().assembled() {
-        assert!(scene.relaxed || change.moved < 1e-9 && change.turned < 1e-9, "its bodies are placed: {change:?}");
+        assert!(
+            scene.start == Start::Relaxed || change.moved < 1e-9 && change.turned < 1e-9,
+            "its bodies are placed: {change:?}"
+        );
     }
     simulation
 }

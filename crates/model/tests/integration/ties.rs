@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dynamics::{Effect, Observation, Reached, Rows, Simulation, StepControl, SystemSetup};
+use dynamics::{Effect, Observation, Reached, Rows, Simulation, Start, StepControl, SystemSetup};
 use faer::Mat;
 use model::{BodyMarker, Model, StartError, Tied, UnknownTurns, tie};
 use nalgebra::Vector3;
@@ -111,7 +111,7 @@ fn start(tied: &Tied, control: StepControl, end: f64) -> Simulation {
     Simulation::of_system(SystemSetup {
         system: tied.system.clone(),
         states: tied.states.clone(),
-        relaxed: false,
+        start: Start::AsPlaced,
         scheme: dynamics::SystemScheme::Radau,
         control,
         end,
@@ -163,7 +163,7 @@ fn a_ball_to_the_ground_moves_a_bar_as_a_pin_does() {
     let mut simulation = Simulation::of_system(SystemSetup {
         system: tied.system,
         states: tied.states,
-        relaxed: false,
+        start: Start::AsPlaced,
         scheme: dynamics::SystemScheme::Radau,
         control: StepControl::Tolerance(1e-6),
         end: 0.02,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use dynamics::{Coordinate, Effect, Friction, Stops};
+use dynamics::{Coordinate, Effect, Friction, Start, Stops};
 
 use super::Check;
 use crate::body::Body;
@@ -18,8 +18,8 @@ use crate::tie::joint::{
 };
 use crate::tie::marker::{GroundMarker, MarkerPlace};
 use crate::tie::section::{
-    BushingSection, CouplingSection, DriveSection, JointSection, JointSpringSection, SpringSection, StopsSection,
-    TieSections,
+    BushingSection, CouplingSection, DriveSection, JointSection, JointSpringSection, SpringSection, StartName,
+    StopsSection, TieSections,
 };
 
 /// Ties between the bodies of a scene.
@@ -30,7 +30,7 @@ pub(crate) struct Ties {
     pub springs: Vec<Spring>,
     pub bushings: Vec<Bushing>,
     pub couplings: Vec<Coupling>,
-    pub relaxed: bool,
+    pub start: Start,
 }
 
 /// The bodies and the ground that ends are looked up in.
@@ -42,7 +42,7 @@ struct Ends<'a> {
 impl Check<'_> {
     /// Joints, springs and bushings between these bodies.
     pub fn ties(&self, sections: TieSections, bodies: &[Body]) -> Result<Ties, SceneError> {
-        let TieSections { relaxed, ground, joints, springs, bushings, couplings } = sections;
+        let TieSections { relaxed, initial, ground, joints, springs, bushings, couplings } = sections;
         let ground = self.ground_markers(ground.markers)?;
         let counts = [
             ("joints", joints.len()),
@@ -66,7 +66,25 @@ impl Check<'_> {
         let coupling = |(i, section)| self.coupling(&format!("couplings[{i}]"), i, section, &joints, &mut names);
         let couplings = couplings.into_iter().enumerate().map(coupling).collect::<Result<_, _>>()?;
         bodies.iter().filter(|body| body.tied).try_for_each(can_be_tied)?;
-        Ok(Ties { ground, joints, springs, bushings, couplings, relaxed })
+        let start = match (initial, relaxed) {
+            (Some(StartName::Equilibrium), _) => {
+                self.all_are_tied(bodies)?;
+                Start::Equilibrium
+            }
+            (None, true) => Start::Relaxed,
+            (None, false) => Start::AsPlaced,
+        };
+        Ok(Ties { ground, joints, springs, bushings, couplings, start })
+    }
+
+    /// Refuses an equilibrium of a body that moves alone.
+    fn all_are_tied(&self, bodies: &[Body]) -> Result<(), SceneError> {
+        let Some(alone) = bodies.iter().find(|body| !body.tied) else { return Ok(()) };
+        let found =
+            format!("\"equilibrium\" and the body {}, which moves alone", alone.name.as_deref().unwrap_or(ONLY_BODY));
+        let (expected, help) =
+            ("bodies that joints, springs or bushings tie", "tie it: to the ground, or to another body");
+        Err(self.document.place("initial").refuse(found, expected, help))
     }
 
     fn joint(

@@ -17,6 +17,8 @@ use crate::tie::joint::{AlongAndAbout, JointKind};
 pub(crate) struct TieSections {
     /// With `true`, tied bodies begin deformed as the forces on them ask, so that nothing rings.
     pub relaxed: bool,
+    /// `"equilibrium"`: bodies in joints, springs and bushings begin where the forces on them balance, down the energy from where they are placed.
+    pub initial: Option<StartName>,
     /// Places on the ground.
     pub ground: GroundSection,
     /// Joints between markers of two bodies, or of one and the ground.
@@ -27,6 +29,14 @@ pub(crate) struct TieSections {
     pub bushings: Vec<BushingSection>,
     /// Joints whose coordinates go together.
     pub couplings: Vec<CouplingSection>,
+}
+
+/// Where all bodies begin.
+#[derive(Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum StartName {
+    /// Where the forces on them balance.
+    Equilibrium,
 }
 
 #[derive(Default, Deserialize, JsonSchema)]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use dynamics::{
     ConservativeBody, Coordinate, History, Joint, JointDrive, JointForce, Marker, MotionState, Physics, PointForce,
-    PointShapes, RateError, Reached, Rows, Simulation, StepControl, Stops, System, SystemMotion, SystemScheme,
+    PointShapes, RateError, Reached, Rows, Simulation, Start, StepControl, Stops, System, SystemMotion, SystemScheme,
     SystemSetup,
 };
 use nalgebra::{Matrix3, Vector3};
@@ -296,7 +296,7 @@ fn jump(scheme: SystemScheme, _: Extent) -> Result<f64, String> {
     let mut simulation = Simulation::of_system(SystemSetup {
         system: System::new(vec![body(2.0, [0.4; 3], 0.0)?], vec![hinge]).map_err(words)?,
         states: vec![still],
-        relaxed: false,
+        start: Start::AsPlaced,
         scheme,
         control: StepControl::Tolerance(TOLERANCE),
         end: 1.5,

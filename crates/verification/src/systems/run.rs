@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dynamics::{Observation, Reached, Rows, Simulation, StepControl, SystemScheme, SystemSetup};
+use dynamics::{Observation, Reached, Rows, Simulation, Start, StepControl, SystemScheme, SystemSetup};
 use model::{Builder, Model, Tied, tie};
 use scene::Scene;
 
@@ -62,7 +62,7 @@ impl Built {
         Simulation::of_system(SystemSetup {
             system: self.tied.system.clone(),
             states: self.tied.states.clone(),
-            relaxed,
+            start: if relaxed { Start::Relaxed } else { Start::AsPlaced },
             scheme,
             control,
             end,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use dynamics::{Observation, Rows, Simulation, StepControl, SystemScheme, SystemSetup};
+use dynamics::{Observation, Rows, Simulation, Start, StepControl, SystemScheme, SystemSetup};
 use fem_tet10::{Material, Mesh};
 use nalgebra::Vector3;
 use verification::nonlinear::{NodalState, Solid, SolidMotion, cases};
@@ -218,7 +218,7 @@ fn a_free_pair_of_bent_bars_keeps_its_momenta_and_energy() {
         let setup = SystemSetup {
             system: built.tied.system.clone(),
             states: built.tied.states.clone(),
-            relaxed: false,
+            start: Start::AsPlaced,
             scheme: SystemScheme::Gauss,
             control: StepControl::Tolerance(tolerance),
             end: 0.2,

@@ -18,7 +18,7 @@ use crate::simulation::checkpoint::{CheckpointError, decode, encode, equal_room,
 use crate::simulation::walk::EXACT;
 use crate::system::joint::observation::JointObservation;
 use crate::system::radau::stepping::ROUNDING;
-use crate::system::run::setup::{ShapeLimit, assemble};
+use crate::system::run::setup::{ShapeLimit, Start, assemble};
 use crate::system::run::{STABLE, SystemRun, of_step};
 use crate::system::saved::SavedMotion;
 use crate::tolerance::ErrorMeasure;
@@ -141,7 +141,8 @@ impl Motion for SystemRun {
     fn set_states(&mut self, states: &[MotionState]) -> Result<(), SetupError> {
         let mut motion = self.motion.clone();
         motion.set_states(states)?;
-        (self.assembled, self.branching) = assemble(&mut motion, states, false, [self.size, self.end])?;
+        (self.assembled, self.branching, self.stability) =
+            assemble(&mut motion, states, Start::AsPlaced, [self.size, self.end])?;
         self.motion = motion;
         self.exchanged.fill(0.0);
         self.gone.fill(0.0);

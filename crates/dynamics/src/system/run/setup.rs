@@ -16,7 +16,7 @@ use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::equation::{Misfit, misfit};
 use crate::system::joint::row::Row;
 use crate::system::radau::SystemMotion;
-use crate::system::relaxed::RelaxError;
+use crate::system::relaxed::{RelaxError, Stability};
 use crate::system::run::second_order::Branching;
 use crate::system::stage::{OF_PLACES, vector};
 use crate::vibration::system::CommonSpin;
@@ -25,6 +25,29 @@ use crate::vibration::system::configuration::Configuration;
 /// Residuals of positions beyond this part of the size of the system are not closed.
 const CLOSED: f64 = 1e-9;
 
+/// Where bodies in joints begin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum Start {
+    /// As they are placed.
+    #[default]
+    AsPlaced,
+    /// As they are placed, deformed as the forces of their motion and their joints ask, so that nothing rings.
+    Relaxed,
+    /// Where the forces on them balance, down the energy from where they are placed.
+    Equilibrium,
+}
+
+impl Start {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::AsPlaced => "as placed",
+            Self::Relaxed => "relaxed",
+            Self::Equilibrium => "equilibrium",
+        }
+    }
+}
+
 /// Everything that a run of bodies with joints needs.
 #[derive(Debug, Clone)]
 pub struct SystemSetup {
@@ -32,8 +55,8 @@ pub struct SystemSetup {
     pub system: System,
     /// The motion of each body at the beginning, as far as the joints let it be.
     pub states: Vec<MotionState>,
-    /// True if the bodies begin deformed as the forces of their motion and their joints ask, so that nothing rings.
-    pub relaxed: bool,
+    /// Where they begin.
+    pub start: Start,
     /// How it is stepped.
     pub scheme: SystemScheme,
     /// How long the steps are. A tolerance bounds the sum of the errors of all steps, as it does of a body alone.
@@ -134,16 +157,22 @@ fn not_assembled(motion: &SystemMotion, joint: Box<str>, [left, rate]: [f64; 2])
 pub(super) fn assemble(
     motion: &mut SystemMotion,
     states: &[MotionState],
-    relaxed: bool,
+    start: Start,
     [size, end]: [f64; 2],
-) -> Result<(Vec<Assembled>, Option<Branching>), SetupError> {
+) -> Result<(Vec<Assembled>, Option<Branching>, Option<Stability>), SetupError> {
     refuse_wrong_derivatives(motion)?;
     refuse_axes_of_points(motion.system())?;
     let open = motion.largest_gap().map_err(|_| SetupError::SINGULAR)?;
-    let done = if relaxed { motion.relax() } else { motion.assemble().map_err(RelaxError::from) };
-    let [left, rates] = match (done, open) {
-        (Ok(left), _) => left,
+    let done = match start {
+        Start::AsPlaced => motion.assemble().map(|left| (left, None)).map_err(RelaxError::from),
+        Start::Relaxed => motion.relax().map(|left| (left, None)),
+        Start::Equilibrium => motion.put_at_equilibrium().map(|(left, stability)| (left, Some(stability))),
+    };
+    let ([left, rates], stability) = match (done, open) {
+        (Ok(done), _) => done,
         (Err(RelaxError::Rest(error)), _) => return Err(error.into()),
+        (Err(RelaxError::NoEquilibrium(error)), _) => return Err(SetupError::NoEquilibrium(error)),
+        (Err(RelaxError::Wound { joint, turn }), _) => return Err(SetupError::Wound { joint, turn }),
         // Bodies that are too far from where they have to be.
         (Err(_), Some((joint, [left, rate]))) => {
             return Err(not_assembled(motion, joint.into(), [left, rate]));
@@ -174,7 +203,7 @@ pub(super) fn assemble(
         })
     };
     let changes = states.iter().enumerate().map(changed).collect::<Result<_, SetupError>>()?;
-    Ok((changes, branching))
+    Ok((changes, branching, stability))
 }
 
 /// Refuses equations from outside whose derivatives are not theirs.

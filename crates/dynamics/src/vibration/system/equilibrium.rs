@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 
 use faer::Mat;
 
+use crate::system::description::System;
 use crate::system::joint::coordinate::Coordinate;
 use crate::system::radau::SystemMotion;
 use crate::vibration::system::configuration::{CommonSpin, Configuration};
@@ -23,7 +24,7 @@ use crate::vibration::system::terms::{Terms, springs};
 /// Most passes of Newton's method.
 const PASSES: usize = 200;
 /// The largest turn, displacement or bending, as a part of the size of bodies, of one pass.
-const STRIDE: f64 = 0.2;
+const STRIDE: f64 = 0.25;
 /// The longest way in a direction, relative to the system: more where nothing resists means nothing.
 const REACH: f64 = 1e3;
 /// The change at which it has converged, and a change that may be rounding: if it falls no more, it has converged, too.
@@ -31,7 +32,7 @@ const STILL: f64 = 1e-12;
 const NEARLY_STILL: f64 = 1e-8;
 /// Directions from an equilibrium in which others are looked for, softest first, and the strides of the way.
 const DIRECTIONS: usize = 4;
-const WAY: usize = 8;
+const WAY: usize = 12;
 /// Places that differ by less are one.
 const SAME: f64 = 1e-6;
 
@@ -46,7 +47,7 @@ pub struct Equilibrium {
     pub unstable: usize,
     /// Independent motions that nothing resists.
     pub indifferent: usize,
-    /// Directions over all bodies, softest first.
+    /// Motions over all bodies that lead to others: those that deform no body, softest first, and those along which it is unstable.
     directions: Vec<Vec<f64>>,
 }
 
@@ -77,7 +78,7 @@ impl SystemMotion {
         find(self, Configuration::of(self, &CommonSpin::REST), Way::Down)
     }
 
-    /// Other equilibria, stable or not, which the softest motions from one lead to, in both senses. There may be more.
+    /// Other equilibria, stable or not, to which the softest motions of joints lead from one, in both senses. There may be more.
     ///
     /// # Errors
     /// [`SteadyError`] of the equations where a way begins. A way that leads to no equilibrium is left out.
@@ -87,7 +88,8 @@ impl SystemMotion {
         for direction in &from.directions {
             for sense in [1.0, -1.0] {
                 let mut at = from.steady.configuration.clone();
-                let part = sense * STRIDE / size_of(self, direction, &sizes);
+                // Turns count, and ways relative to the whole.
+                let part = sense * STRIDE / size_of(self, direction, &vec![self.size(); sizes.len()]);
                 let step: Vec<f64> = direction.iter().map(|x| part * x).collect();
                 for stride in 1..=WAY {
                     go(self, &mut at, &step);
@@ -162,16 +164,9 @@ fn find(motion: &SystemMotion, mut at: Configuration, way: Way) -> Result<Equili
             return Err(SteadyError::Numbers);
         }
         if size <= STILL || (size <= NEARLY_STILL && size >= 0.5 * last_size) {
-            let slow = |(kappa, _): &&(f64, Vec<f64>)| kappa.abs() <= directions.rounding;
-            let indifferent = directions.modes.iter().filter(slow).count();
-            let unstable = directions.modes.iter().filter(|(kappa, _)| *kappa < -directions.rounding).count();
-            let softest = directions.modes.iter().take(DIRECTIONS).map(|(_, v)| linear.expand(v)).collect();
-            let linear = Linearization { springs: springs(system, &at), ..linear };
-            let steady = SteadyState::at_rest(system, at, terms, linear);
-            let wound = steady.configuration.turns.iter().zip(system.joints());
-            let wound =
-                wound.filter(|(turn, _)| turn.abs() > PI).map(|(turn, joint)| (joint.name.clone(), *turn)).next();
-            return Ok(Equilibrium { wound, steady, unstable, indifferent, directions: softest });
+            // What is left would swing about it.
+            go(motion, &mut at, &change);
+            return Equilibrium::of(system, at);
         }
         if pass == PASSES {
             let body = furthest(motion, &change, &sizes);
@@ -185,6 +180,26 @@ fn find(motion: &SystemMotion, mut at: Configuration, way: Way) -> Result<Equili
         go(motion, &mut at, &change);
     }
     Err(SteadyError::Numbers)
+}
+
+impl Equilibrium {
+    /// Where no force is left.
+    fn of(system: &System, at: Configuration) -> Result<Self, SteadyError> {
+        let terms = Terms::new(system, &at)?;
+        let linear = Linearization::new(system, &terms, springs(system, &at))?;
+        let Directions { modes, rounding } = Directions::of(&linear)?;
+        let indifferent = modes.iter().filter(|(kappa, _)| kappa.abs() <= rounding).count();
+        let unstable = modes.iter().filter(|(kappa, _)| *kappa < -rounding).count();
+        // A body that is bent far is none of a few modes.
+        let leads_on = |(kappa, v): &&(f64, Vec<f64>)| {
+            *kappa < -rounding || v[..linear.rigid].iter().map(|x| x * x).sum::<f64>() > 0.5
+        };
+        let leading = modes.iter().filter(leads_on).take(DIRECTIONS).map(|(_, v)| linear.expand(v)).collect();
+        let mut turns = at.turns.iter().zip(system.joints());
+        let wound = turns.find(|(turn, _)| turn.abs() > PI).map(|(turn, joint)| (joint.name.clone(), *turn));
+        let steady = SteadyState::at_rest(system, at, terms, linear);
+        Ok(Self { wound, steady, unstable, indifferent, directions: leading })
+    }
 }
 
 impl Directions {

@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use dynamics::{ErrorKinds, Joint, Marker, ShapeLimit, Simulation};
+use dynamics::{ErrorKinds, Joint, Marker, ShapeLimit, Simulation, Stability};
 use serde::Serialize;
 
 use crate::files::json;
-use crate::report::{quantity, rounded};
+use crate::report::{counted, quantity, rounded};
 
 /// Changes of a body at the beginning below these parts of the size of the system and of its speeds are not told.
 const TOLD: f64 = 1e-9;
@@ -40,6 +40,8 @@ pub struct TiedReport {
     pub largest_residual: f64,
     /// The first time at which the rounding of places of the ground far away decides how a linkage goes on.
     pub undecided_at: Option<f64>,
+    /// Where it begins at an equilibrium: independent motions along which it is unstable, and those that nothing resists.
+    pub equilibrium: Option<EquilibriumReport>,
     /// Where the motion branches at the beginning: joints, with their rates on the branch that was taken and on the other.
     pub branches: Vec<(String, [f64; 2])>,
     /// Changes by which the joints closed at the beginning, of the bodies that were not where they had to be.
@@ -121,6 +123,15 @@ pub struct AssembledReport {
     pub angular_velocity: f64,
 }
 
+/// The equilibrium at the start.
+#[derive(Debug, Clone, Serialize)]
+pub struct EquilibriumReport {
+    /// Independent motions along which it is unstable.
+    pub unstable: usize,
+    /// Independent motions that nothing resists.
+    pub indifferent: usize,
+}
+
 impl TiedReport {
     /// The report of a run in progress; `None` without joints.
     pub(super) fn new(simulation: &Simulation, bodies: Vec<String>, constrained: Vec<String>) -> Option<Self> {
@@ -159,6 +170,9 @@ impl TiedReport {
             redundant: run.redundant().to_vec(),
             largest_residual: run.largest_residual(),
             undecided_at: run.undecided_at(),
+            equilibrium: run
+                .stability()
+                .map(|Stability { unstable, indifferent }| EquilibriumReport { unstable, indifferent }),
             branches: run.branching().map(|of| of.joints.clone()).unwrap_or_default(),
             assembled: assembled.filter(is_told).collect(),
             rounding_of_places: run.rounding_of_places(),
@@ -183,14 +197,21 @@ impl TiedReport {
 impl TiedReport {
     /// Warnings of bodies that were moved far, and of ways that rounding has chosen.
     pub(super) fn doubts(&self) -> impl Iterator<Item = String> {
-        let is_far = |of: &&AssembledReport| of.moved > FAR * self.size || of.turned > FAR;
+        let is_far =
+            |of: &&AssembledReport| self.equilibrium.is_none() && (of.moved > FAR * self.size || of.turned > FAR);
         self.assembled.iter().filter(is_far).map(|AssembledReport { body, moved, turned, .. }| {
             let [moved, turned] = [moved, turned].map(|x| quantity(rounded(*x, 4)));
             format!(
                 "{body} does not begin where its scene has it, but moved by {moved} and turned by {turned} rad, since its joints do not \
                  close there: if this was not meant, a position, an attitude, a marker or the start of a drive is wrong"
             )
-        }).chain(self.undecided_at.map(|time| {
+        }).chain(self.equilibrium.as_ref().filter(|of| of.unstable > 0).map(|of| {
+            format!(
+                "the equilibrium at the start is unstable along {}: the least disturbance leads away from it; `flexframe equilibrium` looks for \
+                 others near by",
+                counted(of.unstable, ["motion", "motions"])
+            )
+        })).chain(self.undecided_at.map(|time| {
             format!(
                 "at time {} the linkage passes a singular position, nearer than its places on the ground are known so far from the origin: \
                  their rounding decides which way it goes on; put the origin of the scene near its bodies",
@@ -261,10 +282,11 @@ impl fmt::Display for TiedReport {
         for AssembledReport { body, moved, turned, velocity, angular_velocity } in assembled {
             let [moved, turned, velocity, angular_velocity] =
                 [moved, turned, velocity, angular_velocity].map(|x| quantity(rounded(*x, 4)));
+            let aim = if self.equilibrium.is_some() { "the forces balance" } else { "the joints hold" };
             writeln!(
                 f,
                 "  closed   {body} moved by {moved} and turned by {turned} rad, its velocity changed by {velocity} and \
-                 its angular velocity by {angular_velocity} rad per time, so that the joints hold at the start"
+                 its angular velocity by {angular_velocity} rad per time, so that {aim} at the start"
             )?;
         }
         if let Some(StepErrorsReport { ruled_by, sums }) = &self.step_errors {

@@ -1,7 +1,7 @@
 //! Bodies of a scene that are tied together, put together at the start, and where they are later.
 
 use diagnostic::{Diagnostic, Failure};
-use dynamics::{Island, Reached, Rows, Simulation, StepControl, StepError, SystemRun};
+use dynamics::{Island, Reached, Rows, Simulation, Start, StepControl, StepError, SystemRun};
 use model::Model;
 use scene::Scene;
 
@@ -21,8 +21,19 @@ pub(crate) struct TiedMotion {
 
 /// All bodies of a scene that are tied together, by systems, at the start.
 pub(crate) fn tied_motions(scene: &Scene, models: &[Model]) -> Result<Vec<TiedMotion>, Failure> {
+    // Deformed they are by who asks.
+    let start = if scene.start == Start::Equilibrium { Start::Equilibrium } else { Start::AsPlaced };
+    motions_from(scene, models, start)
+}
+
+/// The same where the scene places them.
+pub(crate) fn placed_motions(scene: &Scene, models: &[Model]) -> Result<Vec<TiedMotion>, Failure> {
+    motions_from(scene, models, Start::AsPlaced)
+}
+
+fn motions_from(scene: &Scene, models: &[Model], start: Start) -> Result<Vec<TiedMotion>, Failure> {
     // No step is taken.
-    let at_start = |of| StartSettings { control: StepControl::Tolerance(1e-3), relaxed: false, ..of };
+    let at_start = |of| StartSettings { control: StepControl::Tolerance(1e-3), start, ..of };
     motions(scene, models, at_start, |_| Ok(()))
 }
 
