@@ -103,8 +103,8 @@ pub use vibration::loaded::{AtRest, LoadedError, LoadedMode};
 pub use vibration::steady_spin::SteadySpin;
 pub use vibration::system::{
     BodyStiffening, CommonSpin, Equilibrium, Linearization, ReactionRows, Rotor, RotorError, ScaledEquations, SpinMode,
-    Spring,
-    SteadyError, SteadyState, StiffenedMode, SystemMode, SystemParticipation, TurningJoint, Unbalance, Vibrations,
+    Spring, SteadyError, SteadyState, StiffenedMode, SystemMode, SystemParticipation, TurningJoint, Unbalance,
+    Vibrations,
 };
 
 /// Crates whose types are in the interface.

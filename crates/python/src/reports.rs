@@ -88,7 +88,7 @@ impl CommandReport {
     /// Files of the same names are replaced.
     fn save(&self, py: Python<'_>, folder: PathBuf) -> PyResult<Vec<PathBuf>> {
         let mut report = self.report.clone();
-        py.detach(|| report.write(self.files, &folder, &program())).map_err(|error| exception(py, &error))?;
+        py.detach(|| report.write(self.files, &folder, &program())).map_err(|error| exception(py, &*error))?;
         Ok(report.files)
     }
 
