@@ -156,9 +156,9 @@ fn execute_command(command: Command, session: Session) -> Result<(), Failure> {
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Cli::command(), "flexframe", &mut script);
-            Ok(output::written(std::io::stdout().write_all(&script))?)
+            output::written(std::io::stdout().write_all(&script))
         }
-        Command::Schema => Ok(output::text(&format!("{:#}\n", flexframe::scene::json_schema()))?),
+        Command::Schema => output::text(&format!("{:#}\n", flexframe::scene::json_schema())),
         Command::New(command) => command.execute(session),
         Command::Run(command) => command.execute(session),
         Command::Resume(command) => command.execute(session),

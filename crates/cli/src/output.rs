@@ -83,12 +83,12 @@ pub fn show_estimate(estimate: &Estimate) {
 
 /// Prints the names of files.
 pub fn list(files: &[PathBuf]) -> Result<(), Failure> {
-    files.iter().try_for_each(|file| Ok(line(&format!("  wrote    {}", file.display()))?))
+    files.iter().try_for_each(|file| line(&format!("  wrote    {}", file.display())))
 }
 
 /// Prints what should be known of files.
 pub fn warn(warning: Option<&str>) -> Result<(), Failure> {
-    Ok(warning.map_or(Ok(()), |warning| line(&format!("  warning  {warning}")))?)
+    warning.map_or(Ok(()), |warning| line(&format!("  warning  {warning}")))
 }
 
 /// Writes the use of the cache to standard error.

@@ -251,7 +251,7 @@ impl<'a> Structure<'a> {
         }
         let problem = solver.held_problem().map_err(|error| self.refuse(error))?;
         write_folder(&problem, modes, folder, ranks, &scene.path)
-            .map_err(|source| self.modal(ModalError::Engine(source.into())))
+            .map_err(|source| self.modal(ModalError::Engine(source)))
     }
 
     /// Refuses a body file that was made for other modes or another support: these are what takes long.

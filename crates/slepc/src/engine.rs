@@ -147,13 +147,13 @@ impl Engine for Reader {
         count: usize,
         _: &mut dyn FnMut(Progress),
     ) -> Result<Eigenpairs, EngineError> {
-        Ok(answers::eigenpairs(&self.folder, &digest(problem)?, problem.stiffness.size(), count)?)
+        answers::eigenpairs(&self.folder, &digest(problem)?, problem.stiffness.size(), count)
     }
 
     fn static_answers(&self, problem: &HeldProblem<'_>, forces: MatRef<'_, f64>) -> Result<StaticAnswers, EngineError> {
         let digest = digest(problem)?;
         check_digest(&self.folder, &digest)?;
         let name = write_forces(forces, &self.folder)?;
-        Ok(answers::static_answers(&self.folder, &name, &digest, problem.stiffness.size())?)
+        answers::static_answers(&self.folder, &name, &digest, problem.stiffness.size())
     }
 }

@@ -44,7 +44,7 @@ impl New {
         if output.as_deref().is_some_and(output::is_standard) {
             let (scene, notes) = new_scene::scene_text(&mesh, &settings)?;
             output::doubts(notes);
-            return Ok(output::text(&scene)?);
+            return output::text(&scene);
         }
         let (scene, notes) = new_scene::new_scene(&mesh, &settings, output.as_deref(), files.overwrite)?;
         output::list(&[scene])?;

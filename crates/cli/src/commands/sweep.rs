@@ -52,7 +52,7 @@ impl Sweep {
         });
         if let Some(count) = slurm {
             let script = sweep::slurm_script(&file, &output, count.into());
-            return Ok(output::written(write!(std::io::stdout(), "{script}"))?);
+            return output::written(write!(std::io::stdout(), "{script}"));
         }
         let report = match merge {
             Some(count) => sweep::merge(&file, &output, count.into(), overwrite)?,

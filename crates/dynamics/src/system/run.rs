@@ -19,7 +19,7 @@ use crate::system::radau::estimate::energy_of_way;
 use crate::system::radau::{Failed, SystemMotion};
 use crate::system::relaxed::Stability;
 use crate::system::run::second_order::Branching;
-use crate::system::run::setup::{Assembled, ShapeLimit, SystemSetup, assemble, size};
+use crate::system::run::setup::{Assembled, Placed, ShapeLimit, SystemSetup, assemble, size};
 
 /// Longest step of an explicit scheme under step control, as a part of what the fastest shape allows.
 const STABLE: f64 = 0.9;
@@ -41,10 +41,8 @@ pub struct SystemRun {
     size: f64,
     /// Sum of the largest forces of the loads of each body.
     forces: f64,
-    assembled: Vec<Assembled>,
+    placed: Placed,
     redundant: Vec<(String, usize)>,
-    branching: Option<Branching>,
-    stability: Option<Stability>,
     longest_step: f64,
     largest_residual: f64,
     undecided_at: Option<f64>,
@@ -63,7 +61,7 @@ impl SystemRun {
         let SystemSetup { system, states, start, scheme, control, end, rows, points } = setup;
         let mut motion = SystemMotion::new(system, &states)?.with_scheme(scheme);
         let size = size(&motion, &states);
-        let (assembled, branching, stability) = assemble(&mut motion, &states, start, [size, end])?;
+        let placed = assemble(&mut motion, &states, start, [size, end])?;
         let is_implied = motion.implied_rows();
         let implied = motion.system().connections.sums(is_implied.iter().map(|is_implied| usize::from(*is_implied)));
         let redundant = implied.into_iter().filter(|(_, rows)| *rows > 0).map(|(name, rows)| (name.to_owned(), rows));
@@ -86,10 +84,8 @@ impl SystemRun {
             shape_limit,
             size,
             forces,
-            assembled,
+            placed,
             redundant,
-            branching,
-            stability,
             longest_step: 0.0,
             largest_residual: 0.0,
             undecided_at: None,
@@ -109,7 +105,7 @@ impl SystemRun {
 
     /// Changes of each body by which the joints closed at the beginning.
     pub fn assembled(&self) -> &[Assembled] {
-        &self.assembled
+        &self.placed.changes
     }
 
     /// Largest distance of two bodies at the beginning, or the largest radius of gyration, if that is more.
@@ -125,12 +121,12 @@ impl SystemRun {
 
     /// The equilibrium that it has begun at, where it has begun at one.
     pub fn stability(&self) -> Option<Stability> {
-        self.stability
+        self.placed.stability
     }
 
     /// The branches of the motion at the beginning, if there are two.
     pub fn branching(&self) -> Option<&Branching> {
-        self.branching.as_ref()
+        self.placed.branching.as_ref()
     }
 
     /// The largest residual of all rows of joints and couplings at the ends of the steps so far, as a length over the size of the system.

@@ -37,6 +37,6 @@ impl Play {
         // The page has all that it shows: nothing is left on the disk while it is there.
         drop((session.bar, contents, report, folder));
         output::line(&format!("  page     {} (Ctrl-C ends it)", served.address()))?;
-        Ok(served.serve(page, &session.signals.stop())?)
+        served.serve(page, &session.signals.stop())
     }
 }

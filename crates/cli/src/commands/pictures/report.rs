@@ -46,7 +46,7 @@ impl Report {
         if output.as_deref().is_some_and(output::is_standard) {
             let page = html_report::page(&contents()?)?;
             drop(session.bar);
-            return Ok(output::text(&page)?);
+            return output::text(&page);
         }
         let output = output.unwrap_or_else(|| file.with_extension("html"));
         let mut outputs = outputs_of_results(&file, files.overwrite);

@@ -141,8 +141,7 @@ impl Motion for SystemRun {
     fn set_states(&mut self, states: &[MotionState]) -> Result<(), SetupError> {
         let mut motion = self.motion.clone();
         motion.set_states(states)?;
-        (self.assembled, self.branching, self.stability) =
-            assemble(&mut motion, states, Start::AsPlaced, [self.size, self.end])?;
+        self.placed = assemble(&mut motion, states, Start::AsPlaced, [self.size, self.end])?;
         self.motion = motion;
         self.exchanged.fill(0.0);
         self.gone.fill(0.0);

@@ -153,13 +153,23 @@ fn not_assembled(motion: &SystemMotion, joint: Box<str>, [left, rate]: [f64; 2])
     SetupError::NotAssembled { joint, left, rate }
 }
 
+/// Where bodies in joints have been put.
+#[derive(Debug, Clone)]
+pub(super) struct Placed {
+    /// The change of each body.
+    pub changes: Vec<Assembled>,
+    pub branching: Option<Branching>,
+    /// Of an equilibrium.
+    pub stability: Option<Stability>,
+}
+
 /// Moves the bodies so that the joints close, and finds by how much; and the branches of the motion, if there are two.
 pub(super) fn assemble(
     motion: &mut SystemMotion,
     states: &[MotionState],
     start: Start,
     [size, end]: [f64; 2],
-) -> Result<(Vec<Assembled>, Option<Branching>, Option<Stability>), SetupError> {
+) -> Result<Placed, SetupError> {
     refuse_wrong_derivatives(motion)?;
     refuse_axes_of_points(motion.system())?;
     let open = motion.largest_gap().map_err(|_| SetupError::SINGULAR)?;
@@ -203,7 +213,7 @@ pub(super) fn assemble(
         })
     };
     let changes = states.iter().enumerate().map(changed).collect::<Result<_, SetupError>>()?;
-    Ok((changes, branching, stability))
+    Ok(Placed { changes, branching, stability })
 }
 
 /// Refuses equations from outside whose derivatives are not theirs.
