@@ -59,7 +59,7 @@ pub fn live_contents(file: &Path, builder: &Builder, progress: impl FnMut(BuildP
 /// # Errors
 /// Contents that are no page, and errors of the system.
 pub fn page(report: &RunPage) -> Result<String, Failure> {
-    Ok(report::html(report)?)
+    report::html(report)
 }
 
 /// Writes the page to `path`, whole or not at all.
@@ -67,5 +67,5 @@ pub fn page(report: &RunPage) -> Result<String, Failure> {
 /// # Errors
 /// Contents that are no page, and errors of the system.
 pub fn write(report: &RunPage, path: &Path) -> Result<(), Failure> {
-    Ok(report::write(report, path)?)
+    report::write(report, path)
 }
