@@ -110,7 +110,7 @@ reference:
 
 # Published benchmarks beside ours: docs/evidence/benchmarks.md (a minute or two).
 benchmarks: build
-    {{flexframe}} verify -o out/benchmarks
+    {{flexframe}} verify -o out/benchmarks --overwrite
     cp out/benchmarks/benchmarks.md docs/evidence/benchmarks.md
 
 # The price of accuracy: docs/evidence/accuracy.md and its diagrams from real runs of three scenes (some minutes).

@@ -55,6 +55,11 @@ fn a_folder_is_a_case() {
     assert!(found.status.success() && text.contains("2 numbers pass"), "{text}");
     assert!(fs::read_to_string(out.join("benchmarks.md")).unwrap().contains("**rectangle**, A rectangle"));
     assert!(["srs.csv", "page.md", "figure1.svg"].iter().all(|file| out.join("rectangle").join(file).is_file()));
+    // What is there stays.
+    let again = verify(&folder, &["--output", out.to_str().unwrap()]);
+    assert!(String::from_utf8_lossy(&again.stderr).contains("benchmarks.md: this file is there already"));
+    let own = verify(&folder, &["--output", folder.path().to_str().unwrap(), "--overwrite"]);
+    assert!(own.status.success());
     let listed = done(&["verify", "--list", "--cases", folder.path().to_str().unwrap()]);
     assert!(listed.contains("rectangle  shock  quick  A rectangle"), "{listed}");
 }

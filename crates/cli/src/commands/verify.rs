@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use diagnostic::{Failure, Kind};
 use flexframe::outputs::{OutputError, Written};
-use flexframe::verify::{cases, list, verify};
+use flexframe::verify::{cases, claim, list, verify};
 use whole_file::TemporaryFolder;
 
+use crate::arguments::FileArgs;
 use crate::output;
 use crate::progress::Bar;
 use crate::session::{Session, Taken};
@@ -34,6 +35,8 @@ pub struct Verify {
     /// Folder for a page about all cases, and of each case its scene, its page and the files of its command [default: none is kept].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    files: FileArgs,
     /// Print the summary as JSON, for scripts, and errors as JSON on standard error.
     #[arg(long)]
     json: bool,
@@ -46,13 +49,14 @@ impl Verify {
         mut session: Session,
         run: fn(&[OsString], Session) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let Self { names, cases: folder, quick, list: only_list, output, json } = self;
+        let Self { names, cases: folder, quick, list: only_list, output, files, json } = self;
         output::require_file("--output", output.as_deref())?;
         let cases = cases(&folder.unwrap_or_else(default_folder), &names, quick)?;
         if only_list {
             return session.print(&list(&cases), json);
         }
         output.iter().try_for_each(|folder| Written::FOLDER.check(folder)).map_err(OutputError::from)?;
+        output.iter().try_for_each(|folder| claim(&cases, folder, files.overwrite))?;
         let temporary = TemporaryFolder::new()?;
         let to = output.as_deref().unwrap_or(temporary.path());
         let Session { builder, signals, bar, .. } = &mut session;

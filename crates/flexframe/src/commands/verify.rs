@@ -16,6 +16,7 @@ use crate::files::write_error::WriteError;
 pub use case::Case;
 use found::Answer;
 use outcome::{Outcome, Verdict};
+pub use page::claim;
 
 /// How far a verification has come: a case begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

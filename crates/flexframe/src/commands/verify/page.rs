@@ -1,6 +1,6 @@
 //! Pages about benchmarks, in Markdown.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use diagnostic::Failure;
 use figures::{LineChart, Scale, Series, Stroke};
@@ -10,14 +10,37 @@ use whole_file::write_whole;
 use super::case::{Case, Quantity};
 use super::found::Answer;
 use super::outcome::{Outcome, Verdict, labelled};
+use crate::files::outputs::{OutputError, Outputs};
 use crate::files::write_error::WriteError;
 
 /// The page of all cases.
 const ALL: &str = "benchmarks.md";
 
+/// The page of one case.
+const ONE: &str = "page.md";
+
+/// The copy of the scene of a case.
+fn copy_of(scene: &Path, folder: &Path) -> PathBuf {
+    folder.join(scene.file_name().unwrap_or("scene.toml".as_ref()))
+}
+
+/// Refuses to replace the pages and scenes of other cases, and those that the cases are made of.
+///
+/// # Errors
+/// [`OutputError`].
+pub fn claim(cases: &[Case], folder: &Path, overwrite: bool) -> Result<(), OutputError> {
+    let of_case = |case: &Case| {
+        let folder = folder.join(&case.name);
+        let scene = case.scene().map(|scene| copy_of(&scene, &folder));
+        std::iter::once(folder.join(ONE)).chain(scene).collect::<Vec<_>>()
+    };
+    let files: Vec<PathBuf> = std::iter::once(folder.join(ALL)).chain(cases.iter().flat_map(of_case)).collect();
+    Outputs::new(cases.iter().filter_map(Case::scene).collect(), overwrite).claim(&files)
+}
+
 /// Writes the page of a case with its figures, and its scene beside it.
 pub(super) fn write(case: &Case, outcomes: &[Outcome], answer: Option<&Answer>, folder: &Path) -> Result<(), Failure> {
-    let path = folder.join("page.md");
+    let path = folder.join(ONE);
     let mut page = format!(
         "# {}\n\n{}\n\n`flexframe {}`\n\n{}",
         case.title,
@@ -34,7 +57,7 @@ pub(super) fn write(case: &Case, outcomes: &[Outcome], answer: Option<&Answer>, 
     }
     write_whole(&path, page).map_err(WriteError::of(&path))?;
     if let Some(scene) = case.scene() {
-        let copy = folder.join(scene.file_name().unwrap_or("scene.toml".as_ref()));
+        let copy = copy_of(&scene, folder);
         let text = std::fs::read(&scene).map_err(WriteError::of(&scene))?;
         write_whole(&copy, text).map_err(WriteError::of(&copy))?;
     }
