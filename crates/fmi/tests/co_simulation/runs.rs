@@ -87,7 +87,7 @@ fn a_controller_outside_is_the_same_controller_inside() {
     });
 
     let fmu_model = FmuModel::new(body.clone().into(), &Builder::default(), |_| ()).unwrap();
-    assert_eq!(fmu_model.system, body.clone().into(), "needs are no edits of the scene");
+    assert_eq!(fmu_model.scene, body.clone().into(), "needs are no edits of the scene");
     let (model, tip) = (&fmu_model.bodies[0].model, 1);
     assert_eq!(model.points[tip].0, "tip");
     let held = Arc::new(Mutex::new(Vector3::zeros()));
