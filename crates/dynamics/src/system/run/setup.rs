@@ -159,7 +159,7 @@ pub(super) struct Placed {
     /// The change of each body.
     pub changes: Vec<Assembled>,
     pub branching: Option<Branching>,
-    /// Of an equilibrium.
+    /// The stability of the equilibrium that they begin at.
     pub stability: Option<Stability>,
 }
 
