@@ -18,12 +18,13 @@ use crate::vibration::system::configuration::{CommonSpin, Configuration};
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::graded::graded_modes;
 use crate::vibration::system::linearization::Linearization;
-use crate::vibration::system::steady::{ROUNDING, SteadyState, product, size_of, sizes_of_bodies};
+use crate::vibration::system::steady::{ROUNDING, SteadyState, product, size_of};
 use crate::vibration::system::terms::{Terms, springs};
 
-/// Most passes of Newton's method.
+/// Most passes of Newton's method: to the equilibrium, and to each of the others.
 const PASSES: usize = 200;
-/// The largest turn, displacement or bending, as a part of the size of bodies, of one pass.
+const FEWER_PASSES: usize = 60;
+/// The largest turn, displacement or bending, as a part of the size of the system, of one pass.
 const STRIDE: f64 = 0.25;
 /// The longest way in a direction, relative to the system: more where nothing resists means nothing.
 const REACH: f64 = 1e3;
@@ -31,10 +32,14 @@ const REACH: f64 = 1e3;
 const STILL: f64 = 1e-12;
 const NEARLY_STILL: f64 = 1e-8;
 /// Directions from an equilibrium in which others are looked for, softest first, and the strides of the way.
-const DIRECTIONS: usize = 4;
+const DIRECTIONS: usize = 3;
 const WAY: usize = 12;
+/// Strides after which Newton's own step is tried from the way.
+const TRIED: usize = 2;
 /// Places that differ by less are one.
-const SAME: f64 = 1e-6;
+const SAME: f64 = 1e-3;
+/// Stiffnesses that differ by less are those of one equilibrium along motions that nothing resists.
+const SAME_STIFFNESS: f64 = 1e-4;
 
 /// A system at rest, where no force is left.
 #[derive(Debug, Clone)]
@@ -47,6 +52,8 @@ pub struct Equilibrium {
     pub unstable: usize,
     /// Independent motions that nothing resists.
     pub indifferent: usize,
+    /// κ of the motions that forces resist or drive on.
+    stiffnesses: Vec<f64>,
     /// Motions over all bodies that lead to others: those that deform no body, softest first, and those along which it is unstable.
     directions: Vec<Vec<f64>>,
 }
@@ -75,7 +82,7 @@ impl SystemMotion {
     /// # Errors
     /// [`SteadyError::NoEquilibrium`] where nothing holds a body against a force; [`SteadyError`].
     pub fn equilibrium(&self) -> Result<Equilibrium, SteadyError> {
-        find(self, Configuration::of(self, &CommonSpin::REST), Way::Down)
+        find(self, Configuration::of(self, &CommonSpin::REST), Way::Down, PASSES)
     }
 
     /// Other equilibria, stable or not, to which the softest motions of joints lead from one, in both senses. There may be more.
@@ -84,21 +91,26 @@ impl SystemMotion {
     /// [`SteadyError`] of the equations where a way begins. A way that leads to no equilibrium is left out.
     pub fn other_equilibria(&self, from: &Equilibrium) -> Result<Vec<Equilibrium>, SteadyError> {
         let mut found: Vec<Equilibrium> = Vec::new();
-        let sizes = sizes_of_bodies(self);
+        let sizes = vec![self.size(); self.bodies.len()];
         for direction in &from.directions {
             for sense in [1.0, -1.0] {
                 let mut at = from.steady.configuration.clone();
-                // Turns count, and ways relative to the whole.
-                let part = sense * STRIDE / size_of(self, direction, &vec![self.size(); sizes.len()]);
+                let part = sense * STRIDE / size_of(self, direction, &sizes);
                 let step: Vec<f64> = direction.iter().map(|x| part * x).collect();
                 for stride in 1..=WAY {
                     go(self, &mut at, &step);
                     let terms = Terms::new(self.system(), &at)?;
                     go(self, &mut at, &terms.closing(self.system(), &terms.residuals));
-                    let down = (stride == WAY).then_some(Way::Down);
-                    for way in [Way::Nearest].into_iter().chain(down) {
-                        let Ok(other) = find(self, at.clone(), way) else { continue };
-                        let is_known = |known: &Equilibrium| size_of(self, &known.way_to(&other), &sizes) < SAME;
+                    let ways = match stride {
+                        WAY => &[Way::Nearest, Way::Down][..],
+                        stride if stride.is_multiple_of(TRIED) => &[Way::Nearest],
+                        _ => &[],
+                    };
+                    for &way in ways {
+                        let Ok(other) = find(self, at.clone(), way, FEWER_PASSES) else { continue };
+                        let is_known = |known: &Equilibrium| {
+                            size_of(self, &known.way_to(&other), &sizes) < SAME || known.is_of_family(&other)
+                        };
                         if !std::iter::once(from).chain(&found).any(is_known) {
                             found.push(other);
                         }
@@ -114,6 +126,14 @@ impl Equilibrium {
     /// A joint that is turned by more than half a turn, and its angle: a run that begins here counts from less.
     pub fn wound(&self) -> Option<(&str, f64)> {
         self.wound.as_ref().map(|(joint, turn)| (joint.as_str(), *turn))
+    }
+
+    /// True if another one differs along motions that nothing resists alone.
+    fn is_of_family(&self, other: &Self) -> bool {
+        let like = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_STIFFNESS * a.abs();
+        self.indifferent > 0
+            && self.stiffnesses.len() == other.stiffnesses.len()
+            && self.stiffnesses.iter().zip(&other.stiffnesses).all(like)
     }
 
     /// Changes of place from here to another one, over all bodies, of whose turns only the angle counts.
@@ -138,8 +158,8 @@ fn go(motion: &SystemMotion, at: &mut Configuration, change: &[f64]) {
     }
 }
 
-fn find(motion: &SystemMotion, mut at: Configuration, way: Way) -> Result<Equilibrium, SteadyError> {
-    let (system, sizes) = (motion.system(), sizes_of_bodies(motion));
+fn find(motion: &SystemMotion, mut at: Configuration, way: Way, passes: usize) -> Result<Equilibrium, SteadyError> {
+    let (system, sizes) = (motion.system(), vec![motion.size(); motion.bodies.len()]);
     let mass: f64 = system.bodies.iter().map(crate::ConservativeBody::mass).sum();
     let reach = REACH * mass.sqrt() * motion.size();
     // A spring that is slack or a stop makes the way turn back: then the steps become shorter.
@@ -168,9 +188,9 @@ fn find(motion: &SystemMotion, mut at: Configuration, way: Way) -> Result<Equili
             go(motion, &mut at, &change);
             return Equilibrium::of(system, at);
         }
-        if pass == PASSES {
+        if pass == passes {
             let body = furthest(motion, &change, &sizes);
-            return Err(SteadyError::NoEquilibrium { body, passes: PASSES });
+            return Err(SteadyError::NoEquilibrium { body, passes });
         }
         let turns_back = last.iter().zip(&change).map(|(a, b)| a * b).sum::<f64>() < 0.0;
         part = if turns_back && size > 0.5 * last_size { 0.5 * part } else { (2.0 * part).min(1.0) };
@@ -192,13 +212,14 @@ impl Equilibrium {
         let unstable = modes.iter().filter(|(kappa, _)| *kappa < -rounding).count();
         // A body that is bent far is none of a few modes.
         let leads_on = |(kappa, v): &&(f64, Vec<f64>)| {
-            *kappa < -rounding || v[..linear.rigid].iter().map(|x| x * x).sum::<f64>() > 0.5
+            *kappa < -rounding || *kappa > rounding && v[..linear.rigid].iter().map(|x| x * x).sum::<f64>() > 0.5
         };
         let leading = modes.iter().filter(leads_on).take(DIRECTIONS).map(|(_, v)| linear.expand(v)).collect();
         let mut turns = at.turns.iter().zip(system.joints());
         let wound = turns.find(|(turn, _)| turn.abs() > PI).map(|(turn, joint)| (joint.name.clone(), *turn));
         let steady = SteadyState::at_rest(system, at, terms, linear);
-        Ok(Self { wound, steady, unstable, indifferent, directions: leading })
+        let stiffnesses = modes.iter().map(|(kappa, _)| *kappa).filter(|kappa| kappa.abs() > rounding).collect();
+        Ok(Self { wound, steady, unstable, indifferent, stiffnesses, directions: leading })
     }
 }
 

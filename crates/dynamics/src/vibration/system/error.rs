@@ -26,7 +26,7 @@ pub enum SteadyError {
     },
     /// No place in which all forces balance.
     #[error(
-        "the bodies find no equilibrium after {passes} passes: body {body} is still moving; hold it by a joint or a spring, or take out the \
+        "the bodies find no equilibrium after {passes} passes: {body} is still moving; hold it by a joint or a spring, or take out the \
          load that moves it"
     )]
     NoEquilibrium {

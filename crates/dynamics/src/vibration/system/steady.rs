@@ -161,7 +161,7 @@ impl SteadyState {
 }
 
 /// The radius of gyration of each body; of a point mass the size of the largest body.
-pub(super) fn sizes_of_bodies(motion: &SystemMotion) -> Vec<f64> {
+fn sizes_of_bodies(motion: &SystemMotion) -> Vec<f64> {
     let radii = motion.system().bodies.iter().map(crate::ConservativeBody::radius_of_gyration);
     radii.map(|radius| if radius > 0.0 { radius } else { motion.size() }).collect()
 }
