@@ -93,7 +93,7 @@ pub(super) fn write_all(cases: &[Case], outcomes: &[Vec<Outcome>], folder: &Path
     let [passed, known, missed] = [Verdict::Pass, Verdict::KnownMiss, Verdict::Miss].map(count);
     let mut page = format!(
         "# Published benchmarks\n\nMade by `just benchmarks`, which runs `flexframe verify`. {} cases: {passed} numbers pass, {known} are known misses, {missed} miss. \
-         Tolerances were set before the first run and stayed; where a first mesh missed, a finer one may stand. [How to run them, and add one](../how-to/verify.md).\n",
+         Tolerances were set before the first run and stayed, but where a case says that its own was set later; where a first mesh missed, a finer one may stand. [How to run them, and add one](../how-to/verify.md).\n",
         cases.len()
     );
     for kind in kinds {
