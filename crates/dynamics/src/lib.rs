@@ -93,7 +93,7 @@ pub use system::joint::{Joint, JointPart};
 pub use system::marker::Marker;
 pub use system::marker::motion::{MarkerChange, MarkerMotion, MarkerWrench};
 pub use system::radau::{Failed, SystemMotion, Tried};
-pub use system::relaxed::{RelaxError, Stability};
+pub use system::relaxed::RelaxError;
 pub use system::run::SystemRun;
 pub use system::run::second_order::Branching;
 pub use system::run::setup::{Assembled, ShapeLimit, Start, SystemSetup};
@@ -103,8 +103,8 @@ pub use vibration::loaded::{AtRest, LoadedError, LoadedMode};
 pub use vibration::steady_spin::SteadySpin;
 pub use vibration::system::{
     BodyStiffening, CommonSpin, Equilibrium, Linearization, ReactionRows, Rotor, RotorError, ScaledEquations, SpinMode,
-    Spring, SteadyError, SteadyState, StiffenedMode, SystemMode, SystemParticipation, TurningJoint, Unbalance,
-    Vibrations,
+    Spring, Stability, SteadyError, SteadyState, StiffenedMode, SystemMode, SystemParticipation, TurningJoint,
+    Unbalance, Vibrations,
 };
 
 /// Crates whose types are in the interface.

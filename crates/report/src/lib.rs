@@ -31,4 +31,4 @@ pub use run_page::{
     PageStress, PageSurface, PageTrustLine, PageUnits, RunPage, RunState, SceneText, Shape, ShapeKind, Trust,
 };
 pub use table::{Form, Table, quantity, quoted};
-pub use value::Value;
+pub use value::{Value, at_path};

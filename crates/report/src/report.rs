@@ -13,7 +13,7 @@ use crate::Fact;
 use crate::curves::{Curves, PageWords};
 use crate::error::not_written;
 use crate::table::Table;
-use crate::value::Value;
+use crate::value::{Value, at_path};
 
 /// Width of the labels of lines.
 const LABELS: usize = 9;
@@ -132,14 +132,7 @@ impl Report {
 
     /// The value at a path, such as `peaks[0].magnitude`, of the JSON.
     pub fn value(&self, path: &str) -> Option<Json> {
-        let mut json = &self.json();
-        for part in path.split(['.', '[']) {
-            json = match part.strip_suffix(']') {
-                Some(index) => json.get(index.parse::<usize>().ok()?)?,
-                None => json.get(part)?,
-            };
-        }
-        Some(json.clone())
+        at_path(&self.json(), path).ok().cloned()
     }
 
     /// The number at a path.

@@ -34,6 +34,20 @@ impl Value {
     }
 }
 
+/// The value at a path of JSON, such as `peaks[0].magnitude`.
+///
+/// # Errors
+/// The part of the path that leads nowhere, and the value that it leads on from.
+pub fn at_path<'j, 'p>(json: &'j Json, path: &'p str) -> Result<&'j Json, (&'p str, &'j Json)> {
+    path.split(['.', '[']).try_fold(json, |json, part| {
+        let next = match part.strip_suffix(']') {
+            Some(index) => index.parse::<usize>().ok().and_then(|index| json.get(index)),
+            None => json.get(part),
+        };
+        next.ok_or((part, json))
+    })
+}
+
 fn not_finite(value: f64) -> &'static str {
     match value {
         value if value.is_nan() => "undefined",

@@ -17,19 +17,11 @@ use crate::system::geometry::rank::Judgement;
 use crate::system::radau::{Failed, SystemMotion};
 use crate::system::reactions::{Passing, find_row_accelerations, short_time};
 use crate::system::stage::{put, vector};
+use crate::vibration::system::Stability;
 use crate::vibration::system::error::SteadyError;
 
 /// Passes: the deformation changes the forces a little.
 const PASSES: usize = 6;
-
-/// The equilibrium that a run begins at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stability {
-    /// Independent motions along which the bodies leave it.
-    pub unstable: usize,
-    /// Independent motions that nothing resists.
-    pub indifferent: usize,
-}
 
 /// A start without ringing, or at rest, that was not found.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,10 +61,7 @@ impl SystemMotion {
     /// [`RelaxError`].
     pub fn relax(&mut self) -> Result<[f64; 2], RelaxError> {
         let mut left = self.assemble()?;
-        let given: Vec<_> = (0..self.bodies.len())
-            .map(|body| self.state_in_frame(body))
-            .collect::<Result<_, _>>()
-            .map_err(Failed::Rates)?;
+        let given = self.states_in_frame()?;
         let is_bent = self.system.bodies.iter().any(|body| body.manifold.is_some());
         for _ in 0..PASSES {
             if is_bent {
@@ -91,18 +80,19 @@ impl SystemMotion {
     /// and the largest rate that are left.
     pub(crate) fn put_at_equilibrium(&mut self) -> Result<([f64; 2], Stability), RelaxError> {
         self.assemble()?;
-        let given: Vec<_> = (0..self.bodies.len())
-            .map(|body| self.state_in_frame(body))
-            .collect::<Result<_, _>>()
-            .map_err(Failed::Rates)?;
+        let given = self.states_in_frame()?;
         let found = self.equilibrium().map_err(RelaxError::NoEquilibrium)?;
         if let Some((joint, turn)) = found.wound() {
             return Err(RelaxError::Wound { joint: joint.into(), turn });
         }
         self.set_states_in_frame(&found.steady.states_in_frame()).map_err(|_| SteadyError::Numbers)?;
         self.give_velocities(&given)?;
-        let stability = Stability { unstable: found.unstable, indifferent: found.indifferent };
-        Ok((self.assemble()?, stability))
+        Ok((self.assemble()?, found.stability))
+    }
+
+    /// The states of all bodies, in the frames of the bodies.
+    fn states_in_frame(&mut self) -> Result<Vec<MotionState>, Failed> {
+        (0..self.bodies.len()).map(|body| self.state_in_frame(body)).collect::<Result<_, _>>().map_err(Failed::Rates)
     }
 
     /// Gives the origins of the bodies the velocities, and the bodies the angular velocities, of other states: a body that deforms keeps

@@ -17,9 +17,9 @@ use crate::simulation::longest_step::LongestStep;
 use crate::simulation::plan::StepControl;
 use crate::system::radau::estimate::energy_of_way;
 use crate::system::radau::{Failed, SystemMotion};
-use crate::system::relaxed::Stability;
 use crate::system::run::second_order::Branching;
 use crate::system::run::setup::{Assembled, Placed, ShapeLimit, SystemSetup, assemble, size};
+use crate::vibration::system::Stability;
 
 /// Longest step of an explicit scheme under step control, as a part of what the fastest shape allows.
 const STABLE: f64 = 0.9;

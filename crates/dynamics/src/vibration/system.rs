@@ -32,7 +32,7 @@ pub(crate) mod terms;
 pub(crate) mod tie;
 
 pub use configuration::CommonSpin;
-pub use equilibrium::Equilibrium;
+pub use equilibrium::{Equilibrium, Stability};
 pub use error::SteadyError;
 pub use linearization::Linearization;
 pub use mode::{SystemMode, Vibrations};

@@ -64,14 +64,17 @@ fn a_pendulum_hangs_and_on_its_head_it_is_unstable() {
     for start in [0.0, 1.4, 3.0, -3.0] {
         let motion = pendulum(start, JointForce::default());
         let found = motion.equilibrium().unwrap();
-        assert!((angle(&found) - down).abs() < 1e-12 && found.unstable == 0 && found.indifferent == 0, "{start}");
-        assert!(motion.other_equilibria(&found).unwrap().iter().all(|other| other.unstable == 1));
+        assert!(
+            (angle(&found) - down).abs() < 1e-12 && found.stability.unstable == 0 && found.stability.indifferent == 0,
+            "{start}"
+        );
+        assert!(motion.other_equilibria(&found).unwrap().iter().all(|other| other.stability.unstable == 1));
     }
     let motion = pendulum(-down, JointForce::default());
     let found = motion.equilibrium().unwrap();
-    assert!((angle(&found) + down).abs() < 1e-12 && found.unstable == 1);
+    assert!((angle(&found) + down).abs() < 1e-12 && found.stability.unstable == 1);
     let others = motion.other_equilibria(&found).unwrap();
-    assert!(others.len() == 1 && (angle(&others[0]) - down).abs() < 1e-12 && others[0].unstable == 0);
+    assert!(others.len() == 1 && (angle(&others[0]) - down).abs() < 1e-12 && others[0].stability.unstable == 0);
 }
 
 /// Closed form: a spring of moment k about the hinge, k φ = m g l cos φ from below, also where it is soft and has turned more than once.
@@ -84,7 +87,7 @@ fn a_spring_at_the_hinge_holds_it() {
         let turn = angle(&found) + if free > 6.0 { 2.0 * std::f64::consts::PI } else { 0.0 };
         let moment = stiffness * (turn - free) + MASS * GRAVITY * turn.cos();
         assert!(moment.abs() < 1e-8 * (stiffness + 20.0), "{stiffness} {free}: {turn} {moment}");
-        assert!(found.unstable == 0, "{stiffness} {free}");
+        assert!(found.stability.unstable == 0, "{stiffness} {free}");
         // A run counts turns from less than half a one.
         assert_eq!(found.wound().map(|(joint, _)| joint), (free > 6.0).then_some("hinge"));
         assert!(free > 6.0 || acceleration(&motion, &found) < 1e-8 * (1.0 + stiffness), "{stiffness} {free}");
@@ -100,7 +103,7 @@ fn a_stop_holds_it() {
         let found = motion.equilibrium().unwrap();
         let turn = angle(&found);
         let moment = stops.stiffness * (turn - stops.limits[0]) + MASS * GRAVITY * turn.cos();
-        assert!(moment.abs() < 1e-7 && found.unstable == 0, "{start}: {turn} {moment}");
+        assert!(moment.abs() < 1e-7 && found.stability.unstable == 0, "{start}: {turn} {moment}");
     }
 }
 
@@ -126,7 +129,7 @@ fn a_shallow_truss_has_three_equilibria() {
     let mut all = motion.other_equilibria(&first).unwrap();
     all.push(first);
     let mut places: Vec<(f64, usize)> =
-        all.iter().map(|found| (found.steady.states()[0].origin_global.y, found.unstable)).collect();
+        all.iter().map(|found| (found.steady.states()[0].origin_global.y, found.stability.unstable)).collect();
     places.sort_by(|a, b| a.0.total_cmp(&b.0));
     assert_eq!(places.iter().map(|(_, unstable)| *unstable).collect::<Vec<_>>(), [0, 1, 0], "{places:?}");
     for (y, _) in places {
@@ -154,7 +157,11 @@ fn a_flexible_rod_hangs_stretched() {
     };
     let hanging = motion(Joint::revolute, Matrix3::identity(), at(-1.0));
     let found = hanging.equilibrium().unwrap();
-    assert!((angle(&found) + std::f64::consts::FRAC_PI_2).abs() < 1e-6 && found.unstable == 0, "{}", angle(&found));
+    assert!(
+        (angle(&found) + std::f64::consts::FRAC_PI_2).abs() < 1e-6 && found.stability.unstable == 0,
+        "{}",
+        angle(&found)
+    );
     let upright = at(-std::f64::consts::FRAC_PI_2);
     let axes = upright.attitude.global_to_body().transpose();
     let fixed = motion(Joint::fixed, axes, upright);

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use diagnostic::{Diagnostic, Failure, Kind};
-use dynamics::{Equilibrium, JointObservation, Observation, SteadyError, SystemMotion};
+use dynamics::{Equilibrium, JointObservation, Observation, Stability, SteadyError, SystemMotion};
 use model::{BuildProgress, Builder, Model};
 use nalgebra::Vector3;
 use report::{Form, Report, Table, Value};
@@ -92,14 +92,15 @@ impl Names<'_> {
         let mut at = SystemMotion::new(motion.run.motion().system().clone(), &found.steady.states()).map_err(failed)?;
         at.find_reactions().map_err(|_| SteadyError::Inertia.in_file(&scene.path))?;
         let mut report = Report::default();
-        let stability = match (found.unstable, found.indifferent) {
+        let Stability { unstable, indifferent } = found.stability;
+        let stability = match (unstable, indifferent) {
             (0, 0) => "stable".to_owned(),
             (0, count) => format!("stable, but nothing resists {}", counted(count, ["motion", "motions"])),
             (count, _) => format!("unstable along {}", counted(count, ["motion", "motions"])),
         };
         report.say("rest", "stability", stability);
-        report.put("unstable", found.unstable);
-        report.put("indifferent", found.indifferent);
+        report.put("unstable", unstable);
+        report.put("indifferent", indifferent);
         let vibrations = found.steady.linear.vibrations().map_err(|source| source.in_file(&scene.path))?;
         let mut frequencies = vibrations.modes.iter().map(|mode| mode.circular_frequency() / TAU);
         let lowest = frequencies.find(|frequency| *frequency > 0.0);

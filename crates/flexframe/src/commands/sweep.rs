@@ -193,11 +193,7 @@ pub fn sweep(
 ) -> Result<SweepReport, Failure> {
     let temporary = TemporaryFolder::new().map_err(WriteError::of(output))?;
     // Rows find what earlier rows have asked of the mesh.
-    let cache = match &settings.builder.cache {
-        cache if cache.folder().is_some() => cache.clone(),
-        none => none.elsewhere(temporary.path().join("cache"), u64::MAX),
-    };
-    let builder = Builder { cache, ..settings.builder.clone() };
+    let builder = settings.builder.with_cache_or(temporary.path().join("cache"));
     let plan = Plan::read(path)?;
     let of_shard = settings.shard.map(|shard| shard.table(output));
     let output = of_shard.as_deref().unwrap_or(output);

@@ -1,5 +1,7 @@
 //! Settings with which bodies are built.
 
+use std::path::PathBuf;
+
 use scene::Body;
 use slepc::Slepc;
 
@@ -26,6 +28,13 @@ impl Builder {
     /// One with a cache.
     pub fn with_cache(cache: Cache) -> Self {
         Self { cache, ..Self::default() }
+    }
+
+    /// The same with its cache, or with one in a folder where it has none: work that comes back to a mesh finds what it has asked of it.
+    pub fn with_cache_or(&self, folder: impl Into<PathBuf>) -> Self {
+        let cache =
+            if self.cache.folder().is_some() { self.cache.clone() } else { self.cache.elsewhere(folder, u64::MAX) };
+        Self { cache, ..self.clone() }
     }
 
     /// The same for other needs.

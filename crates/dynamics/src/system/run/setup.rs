@@ -16,11 +16,11 @@ use crate::system::joint::coordinate::Coordinate;
 use crate::system::joint::equation::{Misfit, misfit};
 use crate::system::joint::row::Row;
 use crate::system::radau::SystemMotion;
-use crate::system::relaxed::{RelaxError, Stability};
+use crate::system::relaxed::RelaxError;
 use crate::system::run::second_order::Branching;
 use crate::system::stage::{OF_PLACES, vector};
-use crate::vibration::system::CommonSpin;
 use crate::vibration::system::configuration::Configuration;
+use crate::vibration::system::{CommonSpin, Stability};
 
 /// Residuals of positions beyond this part of the size of the system are not closed.
 const CLOSED: f64 = 1e-9;

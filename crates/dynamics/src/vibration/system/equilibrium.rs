@@ -18,7 +18,7 @@ use crate::vibration::system::configuration::{CommonSpin, Configuration};
 use crate::vibration::system::error::SteadyError;
 use crate::vibration::system::graded::graded_modes;
 use crate::vibration::system::linearization::Linearization;
-use crate::vibration::system::steady::{ROUNDING, SteadyState, product, size_of};
+use crate::vibration::system::steady::{ROUNDING, SteadyState, closed, size_of};
 use crate::vibration::system::terms::{Terms, springs};
 
 /// Most passes of Newton's method: to the equilibrium, and to each of the others.
@@ -38,24 +38,31 @@ const WAY: usize = 12;
 const TRIED: usize = 2;
 /// Places that differ by less are one.
 const SAME: f64 = 1e-3;
-/// Stiffnesses that differ by less are those of one equilibrium along motions that nothing resists.
+/// Where stiffnesses differ by less, two places are one equilibrium, along motions that nothing resists.
 const SAME_STIFFNESS: f64 = 1e-4;
 
 /// A system at rest, where no force is left.
 #[derive(Debug, Clone)]
 pub struct Equilibrium {
-    /// Turns of the joints that are more than half a turn, by their names.
-    wound: Option<(String, f64)>,
     /// The bodies, with the linearised equations.
     pub steady: SteadyState,
-    /// Independent motions in which the energy is highest here: the system leaves it along them.
-    pub unstable: usize,
-    /// Independent motions that nothing resists.
-    pub indifferent: usize,
+    /// The motions that lead away from it.
+    pub stability: Stability,
+    /// A joint that is turned by more than half a turn, and its angle.
+    wound: Option<(String, f64)>,
     /// κ of the motions that forces resist or drive on.
     stiffnesses: Vec<f64>,
     /// Motions over all bodies that lead to others: those that deform no body, softest first, and those along which it is unstable.
     directions: Vec<Vec<f64>>,
+}
+
+/// The motions that lead away from an equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+pub struct Stability {
+    /// Independent motions in which the energy is highest there: the bodies leave it along them.
+    pub unstable: usize,
+    /// Independent motions that nothing resists.
+    pub indifferent: usize,
 }
 
 /// Where Newton's method goes.
@@ -123,6 +130,26 @@ impl SystemMotion {
 }
 
 impl Equilibrium {
+    /// Where no force is left.
+    fn of(system: &System, at: Configuration) -> Result<Self, SteadyError> {
+        let terms = Terms::new(system, &at)?;
+        let linear = Linearization::new(system, &terms, springs(system, &at))?;
+        let Directions { modes, rounding } = Directions::of(&linear)?;
+        let indifferent = modes.iter().filter(|(kappa, _)| kappa.abs() <= rounding).count();
+        let unstable = modes.iter().filter(|(kappa, _)| *kappa < -rounding).count();
+        // A body that is bent far is none of a few modes.
+        let leads_on = |(kappa, v): &&(f64, Vec<f64>)| {
+            *kappa < -rounding || *kappa > rounding && v[..linear.rigid].iter().map(|x| x * x).sum::<f64>() > 0.5
+        };
+        let leading = modes.iter().filter(leads_on).take(DIRECTIONS).map(|(_, v)| linear.expand(v)).collect();
+        let mut turns = at.turns.iter().zip(system.joints());
+        let wound = turns.find(|(turn, _)| turn.abs() > PI).map(|(turn, joint)| (joint.name.clone(), *turn));
+        let steady = SteadyState::at_rest(system, at, terms, linear);
+        let stiffnesses = modes.iter().map(|(kappa, _)| *kappa).filter(|kappa| kappa.abs() > rounding).collect();
+        let stability = Stability { unstable, indifferent };
+        Ok(Self { steady, stability, wound, stiffnesses, directions: leading })
+    }
+
     /// A joint that is turned by more than half a turn, and its angle: a run that begins here counts from less.
     pub fn wound(&self) -> Option<(&str, f64)> {
         self.wound.as_ref().map(|(joint, turn)| (joint.as_str(), *turn))
@@ -131,7 +158,7 @@ impl Equilibrium {
     /// True if another one differs along motions that nothing resists alone.
     fn is_of_family(&self, other: &Self) -> bool {
         let like = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_STIFFNESS * a.abs();
-        self.indifferent > 0
+        self.stability.indifferent > 0
             && self.stiffnesses.len() == other.stiffnesses.len()
             && self.stiffnesses.iter().zip(&other.stiffnesses).all(like)
     }
@@ -168,16 +195,13 @@ fn find(motion: &SystemMotion, mut at: Configuration, way: Way, passes: usize) -
         let terms = Terms::new(system, &at)?;
         let linear = Linearization::new(system, &terms, Vec::new())?;
         let directions = Directions::of(&linear)?;
-        let mut change = terms.closing(system, &terms.residuals);
-        let forces = linear.project(&terms.forces);
-        let by_closing = linear.project(&product(&terms, &linear, &change));
-        let left: Vec<f64> = forces.iter().zip(&by_closing).map(|(force, less)| force - less).collect();
+        let (mut change, forces) = closed(system, &terms, &linear);
         let sizes_of_forces = (0..linear.size()).map(|k| {
             let parts = terms.forces.iter().enumerate().map(|(i, force)| (linear.basis[(i, k)] * force).powi(2));
             parts.sum::<f64>().sqrt()
         });
         let rounding = ROUNDING * sizes_of_forces.fold(0.0, f64::max);
-        let deflection = linear.expand(&directions.steps(&left, (rounding, reach), way));
+        let deflection = linear.expand(&directions.steps(&forces, (rounding, reach), way));
         change.iter_mut().zip(&deflection).for_each(|(sum, more)| *sum += more);
         let size = size_of(motion, &change, &sizes);
         if !size.is_finite() {
@@ -200,27 +224,6 @@ fn find(motion: &SystemMotion, mut at: Configuration, way: Way, passes: usize) -
         go(motion, &mut at, &change);
     }
     Err(SteadyError::Numbers)
-}
-
-impl Equilibrium {
-    /// Where no force is left.
-    fn of(system: &System, at: Configuration) -> Result<Self, SteadyError> {
-        let terms = Terms::new(system, &at)?;
-        let linear = Linearization::new(system, &terms, springs(system, &at))?;
-        let Directions { modes, rounding } = Directions::of(&linear)?;
-        let indifferent = modes.iter().filter(|(kappa, _)| kappa.abs() <= rounding).count();
-        let unstable = modes.iter().filter(|(kappa, _)| *kappa < -rounding).count();
-        // A body that is bent far is none of a few modes.
-        let leads_on = |(kappa, v): &&(f64, Vec<f64>)| {
-            *kappa < -rounding || *kappa > rounding && v[..linear.rigid].iter().map(|x| x * x).sum::<f64>() > 0.5
-        };
-        let leading = modes.iter().filter(leads_on).take(DIRECTIONS).map(|(_, v)| linear.expand(v)).collect();
-        let mut turns = at.turns.iter().zip(system.joints());
-        let wound = turns.find(|(turn, _)| turn.abs() > PI).map(|(turn, joint)| (joint.name.clone(), *turn));
-        let steady = SteadyState::at_rest(system, at, terms, linear);
-        let stiffnesses = modes.iter().map(|(kappa, _)| *kappa).filter(|kappa| kappa.abs() > rounding).collect();
-        Ok(Self { wound, steady, unstable, indifferent, stiffnesses, directions: leading })
-    }
 }
 
 impl Directions {

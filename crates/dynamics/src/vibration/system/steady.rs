@@ -124,10 +124,7 @@ impl SteadyState {
                 check_spin(motion, &terms, &at)?;
             }
             let linear = Linearization::new(system, &terms, Vec::new())?;
-            let mut change = terms.closing(system, &terms.residuals);
-            let mut forces = linear.project(&terms.forces);
-            let by_closing = linear.project(&product(&terms, &linear, &change));
-            forces.iter_mut().zip(&by_closing).for_each(|(force, less)| *force -= less);
+            let (mut change, forces) = closed(system, &terms, &linear);
             let deflection = linear.expand(&linear.deflection(&forces));
             change.iter_mut().zip(&deflection).for_each(|(sum, more)| *sum += more);
             let size = size_of(motion, &change, &sizes);
@@ -166,8 +163,17 @@ fn sizes_of_bodies(motion: &SystemMotion) -> Vec<f64> {
     radii.map(|radius| if radius > 0.0 { radius } else { motion.size() }).collect()
 }
 
+/// The change of place that closes the joints, and the forces on independent coordinates after it.
+pub(super) fn closed(system: &System, terms: &Terms, linear: &Linearization) -> (Vec<f64>, Vec<f64>) {
+    let change = terms.closing(system, &terms.residuals);
+    let mut forces = linear.project(&terms.forces);
+    let by_closing = linear.project(&product(terms, linear, &change));
+    forces.iter_mut().zip(&by_closing).for_each(|(force, less)| *force -= less);
+    (change, forces)
+}
+
 /// (K + Λ) x over all coordinates.
-pub(super) fn product(terms: &Terms, linear: &Linearization, x: &[f64]) -> Vec<f64> {
+fn product(terms: &Terms, linear: &Linearization, x: &[f64]) -> Vec<f64> {
     let mut forces = terms.stiffness_times(x);
     forces.iter_mut().zip(&linear.strain).zip(x).for_each(|((sum, strain), x)| *sum += strain * x);
     forces

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use diagnostic::Diagnostic;
-use model::{Builder, Model};
+use model::Model;
 use results::{Results, unfinished};
 use scene::{BodySource, Choice, Effect, Scene, StepControl, assign, without};
 use toml::Value;
@@ -95,11 +95,7 @@ impl<'a> Search<'a> {
         let failed = |source| RunError::Folder { folder: folder.to_owned(), source };
         let kept = TemporaryFolder::inside(folder).map_err(failed)?;
         // Rounds find what earlier ones have asked of the mesh.
-        let cache = match &settings.builder.cache {
-            cache if cache.folder().is_some() => cache.clone(),
-            none => none.elsewhere(kept.path().join("cache"), u64::MAX),
-        };
-        let builder = Builder { cache, ..settings.builder.clone() };
+        let builder = settings.builder.with_cache_or(kept.path().join("cache"));
         let settings = RunSettings { builder, ..settings.clone() };
         let (keys, rounds) = (Keys::new(), Vec::new());
         Ok(Self { asked: 1.0, given, with_mesh, left_out, folder, settings, kept, keys, rounds })

@@ -106,7 +106,7 @@ fn is_unstable(row: &RowCheck) -> bool {
 
 type Shares = [Option<f64>; Place::ALL.len()];
 
-/// The shares in the answer of a body that has the largest sum: its displacements, those of a point, its stress.
+/// The shares in the answer of a body that has the largest sum: displacements of the body, displacements of a point, stress.
 fn worst(card: Shares, rows: &[RowCheck], drift: f64) -> (Shares, String) {
     let mut worst = (card, "displacements".to_owned());
     let [mesh, modes, steps, model] = [Place::Mesh, Place::Modes, Place::Steps, Place::Model].map(index);

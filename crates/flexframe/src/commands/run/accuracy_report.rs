@@ -74,7 +74,7 @@ impl Round {
     /// The change of a run that is made to compare, and never kept.
     pub const TO_COMPARE: &str = "twice the modes, to compare";
 
-    /// True if the stated error after it is that of the answer.
+    /// True if the answer has the error that is stated after the round.
     fn counts(&self) -> bool {
         self.kept || self.change == Self::TO_COMPARE
     }

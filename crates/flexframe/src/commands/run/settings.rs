@@ -35,8 +35,8 @@ pub struct RunSettings {
     /// Checks rows of each body against the full body at the end: those where its model is most likely to be wrong, as many as cost no
     /// more than its reduction did ([`check`](crate::check)).
     pub check: bool,
-    /// Error of the answer that is asked for: more rows are checked, whatever that costs, and other large modes are looked for where the model
-    /// takes a part of it ([`accuracy::run`](crate::accuracy::run())).
+    /// The accuracy that is asked for: more rows are checked, without a limit of their cost, and other large modes are looked for where the
+    /// model takes a part of the error ([`accuracy::run`](crate::accuracy::run())).
     pub accuracy: Option<f64>,
     /// Set from elsewhere, stops the run at its next row, or before where that is some thousand steps away.
     pub stop: Arc<AtomicBool>,

@@ -41,7 +41,7 @@ pub struct TiedReport {
     /// The first time at which the rounding of places of the ground far away decides how a linkage goes on.
     pub undecided_at: Option<f64>,
     /// Where it begins at an equilibrium: independent motions along which it is unstable, and those that nothing resists.
-    pub equilibrium: Option<EquilibriumReport>,
+    pub equilibrium: Option<Stability>,
     /// Where the motion branches at the beginning: joints, with their rates on the branch that was taken and on the other.
     pub branches: Vec<(String, [f64; 2])>,
     /// Changes by which the joints closed at the beginning, of the bodies that were not where they had to be.
@@ -123,15 +123,6 @@ pub struct AssembledReport {
     pub angular_velocity: f64,
 }
 
-/// The equilibrium at the start.
-#[derive(Debug, Clone, Serialize)]
-pub struct EquilibriumReport {
-    /// Independent motions along which it is unstable.
-    pub unstable: usize,
-    /// Independent motions that nothing resists.
-    pub indifferent: usize,
-}
-
 impl TiedReport {
     /// The report of a run in progress; `None` without joints.
     pub(super) fn new(simulation: &Simulation, bodies: Vec<String>, constrained: Vec<String>) -> Option<Self> {
@@ -170,9 +161,7 @@ impl TiedReport {
             redundant: run.redundant().to_vec(),
             largest_residual: run.largest_residual(),
             undecided_at: run.undecided_at(),
-            equilibrium: run
-                .stability()
-                .map(|Stability { unstable, indifferent }| EquilibriumReport { unstable, indifferent }),
+            equilibrium: run.stability(),
             branches: run.branching().map(|of| of.joints.clone()).unwrap_or_default(),
             assembled: assembled.filter(is_told).collect(),
             rounding_of_places: run.rounding_of_places(),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use diagnostic::{Failure, Kind};
+use report::at_path;
 use results::Results;
 use serde_json::Value as Json;
 
@@ -37,7 +38,7 @@ impl Answer {
         let wrong = |key, found: &str, expected| wrong(case, quantity, key, found, expected);
         let value = match &quantity.place {
             ValuePlace::Report(path) => {
-                let found = at_path(&self.report, path).map_err(|known| wrong("value", path, known))?;
+                let found = value_at(&self.report, path).map_err(|known| wrong("value", path, known))?;
                 found.as_f64().ok_or_else(|| wrong("value", path, format!("a number; there is {}", short(found))))?
             }
             ValuePlace::Column { column, row, .. } => {
@@ -138,23 +139,15 @@ impl Column {
     }
 }
 
-/// The value at a path such as `bodies[0].modes`; else the keys that are known where it ends.
-fn at_path<'a>(report: &'a Json, path: &str) -> Result<&'a Json, String> {
-    let mut json = report;
-    for part in path.split(['.', '[']) {
-        let next = match part.strip_suffix(']') {
-            Some(index) => index.parse::<usize>().ok().and_then(|index| json.get(index)),
-            None => json.get(part),
-        };
-        json = next.ok_or_else(|| match json {
-            Json::Object(object) => {
-                format!("in the place of {part:?} one of {}", object.keys().cloned().collect::<Vec<_>>().join(", "))
-            }
-            Json::Array(list) => format!("in the place of {part:?} an entry of {}, from [0]", list.len()),
-            other => format!("no {part:?} in {}", short(other)),
-        })?;
-    }
-    Ok(json)
+/// The value at a path; else the keys that are known where it ends.
+fn value_at<'a>(report: &'a Json, path: &str) -> Result<&'a Json, String> {
+    at_path(report, path).map_err(|(part, json)| match json {
+        Json::Object(object) => {
+            format!("in the place of {part:?} one of {}", object.keys().cloned().collect::<Vec<_>>().join(", "))
+        }
+        Json::Array(list) => format!("in the place of {part:?} an entry of {}, from [0]", list.len()),
+        other => format!("no {part:?} in {}", short(other)),
+    })
 }
 
 fn short(json: &Json) -> String {

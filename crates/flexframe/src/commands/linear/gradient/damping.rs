@@ -40,7 +40,7 @@ impl Damped {
         c64::new(self.omega * self.omega - omega * omega, omega * self.damping)
     }
 
-    /// Its rate, by that of λ.
+    /// The rate of the stiffness, by the rate of λ.
     pub fn stiffness_rate(&self, omega: f64, rate: f64) -> c64 {
         c64::new(rate, omega * self.slope * rate / (2.0 * self.omega))
     }
